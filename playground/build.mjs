@@ -65,6 +65,13 @@ const examples = [
   { name: "pendulum", text: read(here, "page", "pendulum.mech") },
   ...order.map((name) => ({ name, text: read(models, `${name}.mech`) })),
 ];
+// One whose parts are in a file of their own.
+const partsFolder = join(root, "tests", "data", "parts");
+examples.push({
+  name: "quadruped",
+  text: read(partsFolder, "quadruped.mech"),
+  files: { "leg.mech": read(partsFolder, "leg.mech") },
+});
 const json = (value) => JSON.stringify(value).replace(/</g, "\\u003c");
 
 // Licences of what is bundled, beside it.
@@ -112,6 +119,7 @@ put("site/LICENCES.txt", licences);
 // The folder has the derivations of the examples: these then have the numbers and equations of the tool.
 for (const name of order)
   copyFileSync(join(models, `${name}.derivation`), join(folder, "site", "models", `${name}.derivation`));
+copyFileSync(join(partsFolder, "quadruped.derivation"), join(folder, "site", "models", "quadruped.derivation"));
 
 const size = (name, bytes) => {
   const buffer = Buffer.from(bytes);

@@ -67,8 +67,8 @@ fn is_called_elsewhere(method: &Signature) -> bool {
         .any(|prefix| method.name.starts_with(prefix))
 }
 
-/// The call of a method with plain numbers.
-fn call(method: &Signature) -> String {
+/// The arguments of a method, plain numbers.
+fn passed(method: &Signature) -> String {
     let passed = method.arguments.iter().map(|argument| match argument.name {
         "time" => "at.time",
         "q" => "&array(&at.coordinates).into()",
@@ -79,7 +79,12 @@ fn call(method: &Signature) -> String {
         "surface" => "surface",
         other => panic!("{} has an argument {other} that tests do not know", method.name),
     });
-    format!("Self::machine(at).{}({})", method.name, passed.collect::<Vec<_>>().join(", "))
+    passed.collect::<Vec<_>>().join(", ")
+}
+
+/// The call of a method with plain numbers.
+fn call(method: &Signature) -> String {
+    format!("Self::machine(at).{}({})", method.name, passed(method))
 }
 
 /// The call with numbers that carry derivatives.
@@ -119,6 +124,7 @@ fn write_module(text: &mut String, offered: &Interface, mechanism: &Mechanism) {
     let mut routines = String::new();
     let mut collisions = String::new();
     let mut duals = String::new();
+    let mut in_places = String::new();
     for method in offered.methods.iter().filter(|method| !is_called_elsewhere(method)) {
         let (name, call) = (method.name.as_str(), call(method));
         if name.starts_with("collide_") {
@@ -138,6 +144,17 @@ fn write_module(text: &mut String, offered: &Interface, mechanism: &Mechanism) {
                 "            \"{name}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
             )
             .unwrap();
+            if let Some(in_place) = &method.in_place {
+                // What is overwritten is the answer at another state.
+                let (into, passed) = (&in_place.into, passed(method));
+                writeln!(
+                    routines,
+                    "            \"{into}\" => {{ let other = {{ let at = &elsewhere(at); {call} }}; match other {{ Ok(mut value) => match Self::machine(at).{into}({passed}, &mut value) \
+                     {{ Ok(()) => Ok({flat}), Err(error) => Err(error.to_string()) }}, Err(error) => Err(error.to_string()) }} }},"
+                )
+                .unwrap();
+                writeln!(in_places, "            \"{name}\",").unwrap();
+            }
         }
     }
     write!(
@@ -164,6 +181,10 @@ impl Emitted for {module} {{
         Some(match routine {{
 {routines}            _ => return None,
         }})
+    }}
+    fn in_place(&self) -> &'static [&'static str] {{
+        &[
+{in_places}        ]
     }}
     fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>> {{
         let answer: Result<Vec<Dual64>, StateError> = match routine {{

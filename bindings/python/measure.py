@@ -24,3 +24,14 @@ for name in ("spherical_pendulum", "two_sleds", "slender_rod_5dof", "arm_7dof"):
     many_q, many_u = np.tile(q, (rows, 1)), np.tile(u, (rows, 1))
     many = best(lambda: m.accelerations(many_q, many_u), 2) / rows
     print(f"{name}: accelerations {one * 1e6:.2f} us a call ({one / numpys:.2f} of numpy's), {many * 1e6:.3f} us a row in a batch of {rows}")
+
+SURFACE = {"mu": 0.6, "e": 0.8, "law": "stronge", "errors": "nan"}
+for name in ("spherical_pendulum", "two_sleds", "free_box_corner", "arm_7dof"):
+    m = hodograph.load(ROOT / f"models/{name}.mech")
+    contact = m.contacts[0]
+    q, u = (np.array([x.value for x in xs]) for xs in (m.coordinates, m.speeds))
+    one = best(lambda: m.collide(contact, q, u, **SURFACE), 200)
+    rows = 4096
+    many_q, many_u = np.tile(q, (rows, 1)), np.tile(u, (rows, 1))
+    many = best(lambda: m.collide(contact, many_q, many_u, **SURFACE), 2) / rows
+    print(f"{name}: collide {one * 1e6:.2f} us a call ({one / numpys:.2f} of numpy's), {many * 1e6:.3f} us a row in a batch of {rows}")

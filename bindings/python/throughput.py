@@ -113,7 +113,7 @@ def best(calls):
 
 
 def main(benchmark):
-    m = hodograph.load(ROOT / "tests/benchmark-columns/quadruped.mech")
+    m = hodograph.load(ROOT / "tests/benchmarks/columns/quadruped.mech")
     random = np.random.default_rng(1)
     q = 0.4 * random.normal(size=(ROWS, 19)) + [x.value or 0 for x in m.coordinates]
     q[:, 3:7] /= np.linalg.norm(q[:, 3:7], axis=1, keepdims=True)

@@ -14,7 +14,7 @@ pub mod expand;
 pub use hodograph_derive::{DerivationError, algebra, derive};
 pub use hodograph_emit as emit;
 pub use hodograph_model::{
-    arithmetic, check, diagnostics, explanations, format, model, numeric, page, rendering, rust_names,
-    source, suggest, syntax,
+    arithmetic, check, diagnostics, explanations, format, model, numeric, page, parts, rendering, rust_names,
+    source, suggest, syntax, words,
 };
 pub use hodograph_program::{artifact, explain, files, interpret, program};

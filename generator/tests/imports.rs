@@ -228,14 +228,17 @@ fn an_analysis_has_the_places_of_the_text_itself() {
     let source = folder.model("chain.mech");
     let analysis = hodograph_generator::check::analyse(&source);
     let [found] = &analysis.diagnostics[..] else { panic!("{:?}", analysis.diagnostics) };
-    assert_eq!(&IMPORTING[found.primary.span.range()], "use Link as link[1](hinge: O, base: N)");
+    let use_of_it = source.in_itself(found.primary.span);
+    assert_eq!(&IMPORTING[use_of_it.range()], "use Link as link[1](hinge: O, base: N)");
+    let (file, place) = source.place(found.primary.span);
+    let text = source.imported().nth(file - 1).unwrap().text().unwrap();
+    assert!(text[place.range()].contains("length*length"), "{}", &text[place.range()]);
     let near = IMPORTING.replace("use Link as link[2]", "use Lnk as link[2]");
-    let analysis = hodograph_generator::check::analyse(&Source::file(
-        "",
-        near.replace("import \"parts/link.mech\";", LINK),
-    ));
     let text = near.replace("import \"parts/link.mech\";", LINK);
+    let source = Source::file("", text.as_str());
+    let analysis = hodograph_generator::check::analyse(&source);
     let [found] = &analysis.diagnostics[..] else { panic!("{:?}", analysis.diagnostics) };
-    assert_eq!((&text[found.primary.span.range()], found.code), ("Lnk", codes::PART_UNKNOWN));
+    let place = source.in_itself(found.primary.span);
+    assert_eq!((&text[place.range()], found.code), ("Lnk", codes::PART_UNKNOWN));
     assert_eq!(analysis.tokens.len(), hodograph_generator::syntax::lexer::tokens(&text, 10_000).len());
 }

@@ -29,22 +29,26 @@ const short = (value) => String(+value.toPrecision(6));
 export function makeControls(root, onChange) {
   let values = {},
     surface = {},
-    known = "";
+    surfaces = {},
+    known = "",
+    // of each contact, what is to be shown anew where that of all contacts changes
+    follow = [];
 
-  const row = ({ label, title, low, high, value, step, changed, set, unset }) => {
-    const id = `c-${label.replace(/\W/g, "-")}`;
+  const row = ({ label, of = "", title, low, high, value, step, changed, set, unset }) => {
+    const id = `c-${(of ? `${of}-${label}` : label).replace(/\W/g, "-")}`,
+      name = of ? `${of}: ${label}` : label;
     const slider = element("input", {
       type: "range",
       min: low,
       max: high,
       step: "any",
       id,
-      "aria-label": label,
+      "aria-label": name,
     });
-    const field = element("input", { type: "number", step: "any", "aria-label": `${label}, exactly` });
+    const field = element("input", { type: "number", step: "any", "aria-label": `${name}, exactly` });
     const back = element(
       "button",
-      { type: "button", class: "back", title: "as in the model", "aria-label": `${label} as in the model` },
+      { type: "button", class: "back", title: "as in the model", "aria-label": `${name} as in the model` },
       "\u21ba",
     );
     const put = (now, own) => {
@@ -59,20 +63,25 @@ export function makeControls(root, onChange) {
     slider.addEventListener("input", () => {
       set(+Number(slider.value).toPrecision(5));
       put(Number(slider.value), true);
-      onChange();
+      told();
     });
     field.addEventListener("input", () => {
       if (!Number.isFinite(field.valueAsNumber)) return;
       set(field.valueAsNumber);
       put(field.valueAsNumber, true);
-      onChange();
+      told();
     });
+    const again = () => {
+      const now = changed();
+      put(now === undefined ? value() : now, now !== undefined);
+    };
     back.addEventListener("click", () => {
       unset();
-      put(value, false);
-      onChange();
+      again();
+      told();
     });
-    put(changed === undefined ? value : changed, changed !== undefined);
+    again();
+    if (of) follow.push(again);
     return element(
       "div",
       { class: "row", title: title || undefined },
@@ -82,30 +91,39 @@ export function makeControls(root, onChange) {
       back,
     );
   };
+  const told = () => {
+    follow.forEach((again) => again());
+    onChange();
+  };
   const group = (title, rows, open) =>
     element("details", open ? { open: "" } : {}, element("summary", {}, title), ...rows);
 
   return {
     /** What was changed, as a motion is asked for. */
-    asked: () => ({ values, surface }),
+    asked: () => ({ values, surface, ...(Object.keys(surfaces).length ? { surfaces } : {}) }),
     /** Sets what was changed, as of an address. */
     take(asked) {
       values = { ...asked?.values };
       surface = { ...asked?.surface };
+      surfaces = structuredClone(asked?.surfaces ?? {});
       known = "";
     },
     clear() {
       values = {};
       surface = {};
+      surfaces = {};
       known = "";
     },
     /** Shows the quantities of a model; changes of those that it has no more are forgotten. */
     show(model) {
       const names = new Set(model.quantities.map((one) => one.name));
       for (const name of Object.keys(values)) if (!names.has(name)) delete values[name];
+      const touching = new Set(model.contacts.map((one) => one.name));
+      for (const name of Object.keys(surfaces)) if (!touching.has(name)) delete surfaces[name];
       const now = JSON.stringify(model);
       if (now === known) return;
       known = now;
+      follow = [];
       const opened = new Map(
         [...root.querySelectorAll("details")].map((node) => [node.firstChild.textContent, node.open]),
       );
@@ -121,8 +139,8 @@ export function makeControls(root, onChange) {
               title: one.docs,
               low,
               high,
-              value: one.value,
-              changed: values[one.name],
+              value: () => one.value,
+              changed: () => values[one.name],
               set: (value) => {
                 values[one.name] = value;
               },
@@ -152,8 +170,8 @@ export function makeControls(root, onChange) {
             title: "of all contacts",
             low: 0,
             high,
-            value: stated[name],
-            changed: surface[name],
+            value: () => stated[name],
+            changed: () => surface[name],
             set: (value) => {
               surface[name] = value;
             },
@@ -161,20 +179,24 @@ export function makeControls(root, onChange) {
               delete surface[name];
             },
           });
-        const laws = element(
-          "select",
-          {
-            id: "law",
-            onchange: () => {
-              if (laws.value) surface.law = laws.value;
-              else delete surface.law;
-              onChange();
+        const lawOf = (id, named, usual, list) => {
+          const laws = element(
+            "select",
+            {
+              id,
+              "aria-label": named,
+              onchange: () => {
+                if (laws.value) list().law = laws.value;
+                else delete list().law;
+                told();
+              },
             },
-          },
-          element("option", { value: "" }, `of the model (${stated.law})`),
-          ...LAWS.map((law) => element("option", { value: law }, law)),
-        );
-        laws.value = surface.law || "";
+            element("option", { value: "" }, usual),
+            ...LAWS.map((law) => element("option", { value: law }, law)),
+          );
+          laws.value = list().law || "";
+          return element("div", { class: "row" }, element("label", { for: id }, "law"), laws);
+        };
         if (!model.contacts.some((one) => one.surface)) surface = { ...stated, ...surface };
         nodes.push(
           group(
@@ -182,11 +204,50 @@ export function makeControls(root, onChange) {
             [
               part("mu", "friction \u03bc", 1.5),
               part("e", "restitution e", 1),
-              element("div", { class: "row" }, element("label", { for: "law" }, "law"), laws),
+              lawOf("law", "law of all contacts", `of the model (${stated.law})`, () => surface),
             ],
             opened.get("Contacts") ?? true,
           ),
         );
+        // each by itself, where there are several: what is not set here is that of all
+        const some = model.contacts.some((one) => one.surface);
+        for (const one of model.contacts.length > 1 ? model.contacts : []) {
+          if (some && !one.surface) surfaces[one.name] = { ...stated, ...surfaces[one.name] };
+          const own = () => (surfaces[one.name] ??= {});
+          const tidy = () => {
+            if (!Object.keys(own()).length) delete surfaces[one.name];
+          };
+          const part = (name, label, high) =>
+            row({
+              label,
+              of: one.name,
+              title: `of ${one.name} alone`,
+              low: 0,
+              high,
+              value: () => surface[name] ?? (one.surface ?? stated)[name],
+              changed: () => surfaces[one.name]?.[name],
+              set: (value) => {
+                own()[name] = value;
+              },
+              unset: () => {
+                delete own()[name];
+                tidy();
+              },
+            });
+          const title = `Contact ${one.name}`;
+          nodes.push(
+            group(
+              title,
+              [
+                part("mu", "friction \u03bc", 1.5),
+                part("e", "restitution e", 1),
+                lawOf(`law-${one.name}`, `law of ${one.name}`, "as of all contacts", own),
+              ],
+              opened.get(title) ?? false,
+            ),
+          );
+          tidy();
+        }
       }
       root.replaceChildren(...nodes);
     },

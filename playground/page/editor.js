@@ -81,8 +81,22 @@ const KINDS = {
   body: "class",
 };
 
-/** The editor in an element; `ask` asks the language service, `onText` is told of a new text. */
-export function makeEditor(parent, text, ask, onText) {
+/**
+ * The editor in an element: of a model and the files that it imports, one of which is shown. `service` asks the language
+ * service; `onText` is told of a new text, and of another file that is shown.
+ */
+export function makeEditor(parent, text, service, onText) {
+  let files = [{ name: "model.mech", state: null }],
+    active = 0,
+    version = 0;
+  const textOf = (index) => (index === active ? view.state : files[index].state).doc.toString();
+  // A file and the others, as a question has them.
+  const asked = (index) => ({
+    text: textOf(index),
+    name: files[index].name,
+    files: Object.fromEntries(files.map((file, i) => [file.name, textOf(i)]).filter((_, i) => i !== index)),
+  });
+  const ask = (question) => service({ ...asked(active), ...question });
   const complete = async (context) => {
     const word = context.matchBefore(/[\p{L}\p{N}_]*/u);
     if (
@@ -91,7 +105,7 @@ export function makeEditor(parent, text, ask, onText) {
       !/[.({:]\s?$/.test(context.state.sliceDoc(Math.max(0, context.pos - 2), context.pos))
     )
       return null;
-    const answer = await ask({ ask: "complete", text: context.state.doc.toString(), at: context.pos });
+    const answer = await ask({ ask: "complete", at: context.pos });
     if (!answer?.proposals?.length) return null;
     const options = answer.proposals.map((one, index) => ({
       label: one.label,
@@ -103,45 +117,52 @@ export function makeEditor(parent, text, ask, onText) {
     return { from: word.from, options, validFor: /^[\p{L}\p{N}_]*$/u };
   };
   const hover = hoverTooltip(async (view, at) => {
-    const answer = await ask({ ask: "hover", text: view.state.doc.toString(), at });
+    const answer = await ask({ ask: "hover", at });
     if (!answer?.text) return null;
     return { pos: answer.from, end: answer.to, above: true, create: () => ({ dom: written(answer.text) }) };
   });
-  const apply = (edits) => view.dispatch({ changes: edits, userEvent: "input.fix" });
+  const apply = (edits, file = files[active].name) => {
+    const index = files.findIndex((one) => one.name === file);
+    if (index !== active) open(index);
+    view.dispatch({ changes: edits, userEvent: "input.fix" });
+  };
   const rename = () => {
     const at = view.state.selection.main.head,
-      now = view.state.doc.toString();
-    ask({ ask: "rename", text: now, at }).then(async (can) => {
+      now = version;
+    ask({ ask: "rename", at }).then(async (can) => {
       if (!can?.name) return announce(can?.refused || "nothing here can be renamed");
       const name = prompt(`A new name for ${can.name}`, can.name);
       if (!name || name === can.name) return;
-      const done = await ask({ ask: "rename", text: now, at, name });
-      if (done?.edits && view.state.doc.toString() === now) apply(done.edits);
-      else announce(done?.refused || "the text has changed");
+      const done = await ask({ ask: "rename", at, new: name });
+      if (!done?.changes || version !== now) return announce(done?.refused || "the text has changed");
+      done.changes.forEach(({ file, edits }) => {
+        const index = files.findIndex((one) => one.name === file);
+        const change = { changes: edits, userEvent: "input.rename" };
+        if (index === active) view.dispatch(change);
+        else files[index].state = files[index].state.update(change).state;
+      });
+      changed();
     });
     return true;
   };
   const jump = () => {
-    ask({ ask: "definition", text: view.state.doc.toString(), at: view.state.selection.main.head }).then(
-      (place) => {
-        if (place) view.dispatch({ selection: { anchor: place[0], head: place[1] }, scrollIntoView: true });
-      },
-    );
+    ask({ ask: "definition", at: view.state.selection.main.head }).then((place) => {
+      if (place) select(place.from, place.to, place.file || files[active].name);
+    });
     return true;
   };
   const format = () => {
     const now = view.state.doc.toString();
-    ask({ ask: "format", text: now }).then((answer) => {
+    ask({ ask: "format" }).then((answer) => {
       if (answer?.text === undefined) return announce(answer?.refused || "not formatted");
       if (view.state.doc.toString() === now) replace(answer.text);
     });
     return true;
   };
   let announce = () => {};
-  const view = new EditorView({
-    parent,
-    state: EditorState.create({
-      doc: text,
+  const fresh = (doc) =>
+    EditorState.create({
+      doc,
       extensions: [
         lineNumbers(),
         lintGutter(),
@@ -177,11 +198,29 @@ export function makeEditor(parent, text, ask, onText) {
           indentWithTab,
         ]),
         EditorView.updateListener.of((update) => {
-          if (update.docChanged) onText(update.state.doc.toString());
+          if (update.docChanged) changed();
         }),
       ],
-    }),
-  });
+    });
+  const changed = () => {
+    version++;
+    onText();
+  };
+  const open = (index) => {
+    files[active].state = view.state;
+    active = index;
+    view.setState(files[index].state);
+    changed();
+  };
+  files[0].state = fresh(text);
+  const view = new EditorView({ parent, state: files[0].state });
+  const select = (from, to, file) => {
+    const index = files.findIndex((one) => one.name === file);
+    if (index >= 0 && index !== active) open(index);
+    const within = (at) => Math.min(at, view.state.doc.length);
+    view.dispatch({ selection: { anchor: within(from), head: within(to) }, scrollIntoView: true });
+    view.focus();
+  };
   // The least change, so that the cursor and the history stay.
   const replace = (text) => {
     const now = view.state.doc.toString();
@@ -198,16 +237,46 @@ export function makeEditor(parent, text, ask, onText) {
   };
   return {
     view,
-    replace,
     format,
     rename,
-    text: () => view.state.doc.toString(),
+    select,
+    /** Counts changes of texts. */
+    version: () => version,
+    /** The text of the model itself. */
+    text: () => textOf(0),
+    /** The names of the files; the model comes first. */
+    names: () => files.map((file) => file.name),
+    active: () => active,
+    /** The text of a file and the others, as a question has them. */
+    asked,
+    open,
+    /** Another model, with the files that it imports by their names. */
+    replace(text, others = {}, name = "model.mech") {
+      if (active) open(0);
+      files = [
+        { ...files[0], name },
+        ...Object.entries(others).map(([name, text]) => ({ name, state: fresh(text) })),
+      ];
+      const before = version;
+      replace(text);
+      if (version === before) changed();
+    },
+    /** One more file; it is shown. */
+    add(name, text) {
+      files.push({ name, state: fresh(text) });
+      open(files.length - 1);
+    },
+    remove(index) {
+      if (active === index) open(0);
+      if (active > index) active--;
+      files.splice(index, 1);
+      changed();
+    },
     onAnnounce: (told) => {
       announce = told;
     },
-    /** Shows what `check` answered, if it is of the text that is there. */
-    show(answer, of) {
-      if (view.state.doc.toString() !== of) return;
+    /** Shows findings and colours of the file that is shown. */
+    show(answer) {
       const length = view.state.doc.length;
       const within = (at) => Math.min(at, length);
       const list = answer.findings.map((found) => ({
@@ -216,17 +285,13 @@ export function makeEditor(parent, text, ask, onText) {
         severity: found.error ? "error" : "warning",
         source: found.code,
         message: found.message,
-        actions: found.fixes.map((fix) => ({ name: fix.title, apply: () => apply(fix.edits) })),
+        actions: found.fixes.map((fix) => ({ name: fix.title, apply: fix.apply ?? (() => apply(fix.edits, fix.file)) })),
       }));
       const words = answer.colours
         .filter(([from, to]) => from < to && to <= length)
         .map(([from, to, kind]) => mark(kind).range(from, to));
       view.dispatch(setDiagnostics(view.state, list));
       view.dispatch({ effects: recolour.of(Decoration.set(words, true)) });
-    },
-    select(from, to) {
-      view.dispatch({ selection: { anchor: from, head: to }, scrollIntoView: true });
-      view.focus();
     },
   };
 }

@@ -6,6 +6,7 @@ import { asker } from "./asker.js";
 import { makeControls } from "./controls.js";
 import { showCourse } from "./course.js";
 import { makeEditor } from "./editor.js";
+import { findings, makeTabs } from "./files.js";
 import { derivationOf, loadModule } from "./module.js";
 import { saveModel, savePicture, saveTable } from "./save.js";
 import { fromFragment, toFragment } from "./share.js";
@@ -36,8 +37,7 @@ async function begin() {
   const served = watchFile((file) => {
     if (file.fault) return say(file.fault, "error");
     derive(file.derivation || "");
-    if (file.text === editor.text()) move();
-    else editor.replace(file.text);
+    editor.replace(file.text, file.files, file.name);
   });
   const derive = (text) => {
     derivation = text;
@@ -55,47 +55,58 @@ async function begin() {
     begun = null;
 
   derive(file?.derivation || "");
-  const first = file?.text ?? shared?.text ?? examples[0].text;
+  const first = file?.text ? file : (shared ?? examples[0]);
   const editor = makeEditor(
     byId("editor"),
-    first,
+    "",
     (question) => words.ask(question, { limit: 5000 }),
-    () => checkSoon(),
+    () => {
+      tabs.show();
+      checkSoon();
+    },
   );
+  const tabs = makeTabs(byId("files"), editor);
   editor.onAnnounce((text) => say(text, "warning"));
   const controls = makeControls(byId("controls"), () => moveSoon());
   controls.take(shared);
   if (shared?.until) byId("until").value = shared.until;
   byId("name").textContent = file?.name || "";
 
-  const problems = (answer) => {
+  let listed = "";
+  const problems = (found) => {
     const list = byId("problems");
+    // a button that is pressed stays
+    const now = JSON.stringify([editor.names(), found.map((one) => [one.file, one.from, one.to, one.message])]);
+    if (now === listed) return;
+    listed = now;
     list.replaceChildren(
-      ...answer.findings.slice(0, 30).map((found) => {
+      ...found.slice(0, 30).map((one) => {
         const item = document.createElement("li"),
           button = document.createElement("button");
         button.type = "button";
-        button.className = found.error ? "error" : "warning";
-        const line = editor.view.state.doc.lineAt(
-          Math.min(found.from, editor.view.state.doc.length),
-        ).number;
-        button.textContent = `${found.code}, line ${line}: ${found.message.split("\n")[0]}`;
-        button.addEventListener("click", () => editor.select(found.from, found.to));
+        button.className = one.error ? "error" : "warning";
+        const index = editor.names().indexOf(one.file);
+        const line = (index < 0 ? "" : editor.asked(index).text).slice(0, one.from).split("\n").length;
+        const where = index > 0 ? `${one.file} line` : "line";
+        button.textContent = `${one.code}, ${where} ${line}: ${one.message.split("\n")[0]}`;
+        button.addEventListener("click", () => editor.select(one.from, one.to, one.file));
         item.append(button);
         return item;
       }),
     );
-    list.hidden = !answer.findings.length;
+    list.hidden = !found.length;
   };
 
   const check = async () => {
-    const text = editor.text();
-    const answer = await words.ask({ ask: "check", text }, { limit: 5000 });
-    if (!answer || editor.text() !== text) return;
+    const version = editor.version(),
+      asked = (index) => words.ask({ ...editor.asked(index), ask: "check" }, { limit: 5000 });
+    const [answer, own] = await Promise.all([asked(0), editor.active() ? asked(editor.active()) : null]);
+    if (!answer || editor.version() !== version) return;
     if (answer.fault) return say(answer.fault, "error");
-    editor.show(answer, text);
-    problems(answer);
-    const count = answer.findings.filter((found) => found.error).length;
+    const { here, all } = findings(editor, answer, own ?? answer, tabs.add);
+    editor.show({ findings: here, colours: (own ?? answer).colours });
+    problems(all);
+    const count = all.filter((found) => found.error).length;
     document.body.dataset.errors = count;
     if (answer.errors) {
       motions.drop();
@@ -106,8 +117,8 @@ async function begin() {
         "error",
       );
     }
-    const described = await words.ask({ ask: "describe", text }, { limit: 5000 });
-    if (!described || described.fault || editor.text() !== text) return;
+    const described = await words.ask({ ...editor.asked(0), ask: "describe" }, { limit: 5000 });
+    if (!described || described.fault || editor.version() !== version) return;
     model = described;
     controls.show(model);
     document.title = `${model.name}: Hodograph`;
@@ -116,15 +127,14 @@ async function begin() {
   const checkSoon = later(60, check);
 
   const move = async () => {
-    const mine = ++round,
-      text = editor.text();
+    const mine = ++round;
     if (!model) return;
     motions.drop();
     begun = null;
     const span = Number(byId("until").value);
     const question = {
+      ...editor.asked(0),
       ask: "move",
-      text,
       derivation,
       ...controls.asked(),
       ...(span > 0 ? { until: span } : {}),
@@ -202,15 +212,17 @@ async function begin() {
     derive(await derivationOf(chosen.name));
     controls.clear();
     history.replaceState(null, "", location.pathname + location.search);
-    editor.replace(chosen.text);
+    editor.replace(chosen.text, chosen.files);
     event.target.value = "";
   });
   byId("until").addEventListener("change", move);
   byId("format").addEventListener("click", editor.format);
   byId("share").addEventListener("click", async () => {
     const span = Number(byId("until").value);
+    const { text, files } = editor.asked(0);
     const fragment = await toFragment({
-      text: editor.text(),
+      text,
+      ...(Object.keys(files).length ? { files } : {}),
       ...controls.asked(),
       ...(span > 0 ? { until: span } : {}),
     });
@@ -230,7 +242,7 @@ async function begin() {
     const kind = event.target.value,
       name = model?.name || "model";
     event.target.value = "";
-    if (kind === "model") saveModel(name, editor.text());
+    if (kind === "model") editor.names().forEach((file, i) => saveModel(i ? file : `${name}.mech`, editor.asked(i).text));
     if (kind === "svg" && shown) savePicture(name, byId("motion").querySelector("#stage"));
     if (kind === "csv" && latest) saveTable(name, latest);
   });
@@ -239,7 +251,7 @@ async function begin() {
     say("stopped", "warning");
   });
   byId("equations").addEventListener("click", async () => {
-    const answer = await words.ask({ ask: "equations", text: editor.text(), derivation }, { limit: 8000 });
+    const answer = await words.ask({ ...editor.asked(0), ask: "equations", derivation }, { limit: 8000 });
     if (!answer?.page) return say(answer?.fault || "no equations", "warning");
     const frame = byId("equations-frame");
     frame.srcdoc = answer.page;
@@ -248,13 +260,12 @@ async function begin() {
   byId("close").addEventListener("click", () => byId("equations-box").close());
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);
-    if (other && other.text !== editor.text()) {
-      controls.take(other);
-      editor.replace(other.text);
-    }
+    if (!other) return;
+    controls.take(other);
+    editor.replace(other.text, other.files);
   });
   globalThis.hodograph = { words, motions, editor, latest: () => latest };
-  await check();
+  editor.replace(first.text, first.files, first.name?.endsWith(".mech") ? first.name : undefined);
 }
 
 begin().catch((error) => say(`the page cannot begin: ${error.message || error}`, "error"));

@@ -67,6 +67,6 @@ export function picture(stage) {
   return new XMLSerializer().serializeToString(copy);
 }
 
-export const saveModel = (name, text) => save(`${name}.mech`, "text/plain", text);
+export const saveModel = (name, text) => save(name.split("/").pop(), "text/plain", text);
 export const saveTable = (name, answer) => save(`${name}.csv`, "text/csv", table(answer));
 export const savePicture = (name, stage) => save(`${name}.svg`, "image/svg+xml", picture(stage));

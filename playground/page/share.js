@@ -26,7 +26,8 @@ export async function fromFragment(fragment) {
   try {
     const bytes = await packed(bytesOf(found[1]), new DecompressionStream("deflate-raw"));
     const shared = bytes.length > MOST ? null : JSON.parse(new TextDecoder().decode(bytes));
-    return shared && typeof shared.text === "string" ? shared : null;
+    const isText = (text) => typeof text === "string";
+    return shared && isText(shared.text) && Object.values(shared.files ?? {}).every(isText) ? shared : null;
   } catch {
     return null;
   }

@@ -4,6 +4,8 @@ use hodograph::nalgebra::Vector3;
 use hodograph::{Hodograph, Law, ReducedMatrix, Surface};
 use serde_json::{Value, json};
 
+use crate::answer::object;
+
 /// Points of the curve.
 const POINTS: usize = 160;
 
@@ -17,7 +19,7 @@ pub fn law(name: &str) -> Result<Law, String> {
         .iter()
         .copied()
         .find(|law| law.name() == name)
-        .ok_or_else(|| format!("there is no law `{name}`: newton, poisson and stronge are known"))
+        .ok_or_else(|| format!("there is no law `{name}`: give one of {}", Law::NAMES.join(", ")))
 }
 
 /// Velocity along t and s, velocity along n and normal impulse, along the course of a collision with a reduced
@@ -47,5 +49,5 @@ pub fn course(question: &Value) -> Result<Value, String> {
     let impact = hodograph.impact();
     let end = impact.phases.slip_end.map(|at| at.impulse.x);
     let compressed = impact.phases.compression_end.map(|at| at.impulse.x);
-    Ok(json!({ "points": points, "slip_end": end, "compression_end": compressed }))
+    Ok(object!({ "points": points, "slip_end": end, "compression_end": compressed }))
 }

@@ -1,17 +1,10 @@
 //! The quantities of a model, for sliders.
 
-use hodograph_model::model::mechanism::{Law, Mechanism, Variable};
+use hodograph_model::model::mechanism::{Mechanism, Variable};
 use hodograph_model::numeric::State;
-use serde_json::{Value, json};
+use serde_json::Value;
 
-/// The name of a law of restitution.
-pub fn law(law: Law) -> &'static str {
-    match law {
-        Law::Newton => "newton",
-        Law::Poisson => "poisson",
-        Law::Stronge => "stronge",
-    }
-}
+use crate::answer::object;
 
 /// Parameters, coordinates, speeds and inputs with the values that the model gives, and its contacts.
 pub fn describe(model: &Mechanism) -> Value {
@@ -20,8 +13,8 @@ pub fn describe(model: &Mechanism) -> Value {
         let pairs = variables.iter().zip(values).filter(|(one, _)| !one.fixed && !one.dependent);
         pairs
             .map(|(one, value)| {
-                json!({
-                    "kind": kind, "name": one.name, "unit": one.unit, "docs": one.docs.trim(), "value": value,
+                object!({
+                    "kind": kind, "name": one.name.as_str(), "unit": one.unit.as_str(), "docs": one.docs.trim(), "value": *value,
                     "stated": one.value.is_some(), "typical": one.typical,
                     "follows": one.initial.is_some(),
                 })
@@ -38,13 +31,12 @@ pub fn describe(model: &Mechanism) -> Value {
         .contacts
         .iter()
         .map(|contact| {
-            let surface = contact
-                .surface
-                .map(|stated| json!({ "mu": stated.mu, "e": stated.e, "law": law(stated.law) }));
-            json!({ "name": contact.name, "gap": contact.gap.is_some(), "surface": surface })
+            let surface =
+                contact.surface.map(|stated| object!({ "mu": stated.mu, "e": stated.e, "law": stated.law }));
+            object!({ "name": contact.name.as_str(), "gap": contact.gap.is_some(), "surface": surface })
         })
         .collect();
-    json!({
-        "name": model.name, "docs": model.docs.trim(), "quantities": quantities.concat(), "contacts": contacts,
+    object!({
+        "name": model.name.as_str(), "docs": model.docs.trim(), "quantities": quantities.concat(), "contacts": contacts,
     })
 }

@@ -11,8 +11,10 @@
 //! | `hodograph` | the course of a collision |
 //! | `equations` | the equations of a model with a derivation, as a page |
 //!
-//! Places in texts are counted as JavaScript counts them, in units of UTF-16.
+//! A model is asked of as `text`, with its `name` and the `files` that it may import. Places in texts are counted
+//! as JavaScript counts them, in units of UTF-16.
 
+mod answer;
 mod collision;
 mod describe;
 mod exports;
@@ -20,8 +22,10 @@ mod language;
 mod model;
 mod motion;
 mod places;
+mod texts;
 
-use serde_json::{Value, json};
+use answer::object;
+use serde_json::Value;
 
 /// Says how far a motion is (s); the answer is whether to go on.
 pub type GoOn<'a> = &'a dyn Fn(f64) -> bool;
@@ -31,7 +35,7 @@ const MOST: usize = 16 << 20;
 
 /// Answers a question.
 pub fn answer(question: &str, go_on: GoOn<'_>) -> String {
-    let fault = |text: String| json!({ "fault": text });
+    let fault = |text: String| object!({ "fault": text });
     if question.len() > MOST {
         return fault(format!("the question has {} bytes: {MOST} is the most", question.len())).to_string();
     }
@@ -43,20 +47,20 @@ pub fn answer(question: &str, go_on: GoOn<'_>) -> String {
 }
 
 fn ask(question: &Value, go_on: GoOn<'_>) -> Result<Value, String> {
-    let text = || question["text"].as_str().ok_or_else(|| "the question has no text".to_owned());
+    let texts = || texts::Texts::of(question);
     let at = || question["at"].as_u64().unwrap_or(0) as u32;
     Ok(match question["ask"].as_str().unwrap_or("") {
-        "check" => language::check(text()?),
-        "complete" => language::complete(text()?, at()),
-        "hover" => language::hover(text()?, at()),
-        "rename" => language::rename(text()?, at(), question["name"].as_str().unwrap_or("")),
-        "definition" => language::definition(text()?, at()),
-        "outline" => language::outline(text()?),
-        "format" => language::format(text()?),
-        "describe" => describe::describe(&model::read(text()?)?),
-        "move" => motion::motion(text()?, question, go_on)?,
+        "check" => language::check(&texts()?),
+        "complete" => language::complete(&texts()?, at()),
+        "hover" => language::hover(&texts()?, at()),
+        "rename" => language::rename(&texts()?, at(), question["new"].as_str().unwrap_or("")),
+        "definition" => language::definition(&texts()?, at()),
+        "outline" => language::outline(&texts()?),
+        "format" => language::format(&texts()?),
+        "describe" => describe::describe(&model::read(&texts()?.source())?),
+        "move" => motion::motion(&texts()?.source(), question, go_on)?,
         "hodograph" => collision::course(question)?,
-        "equations" => model::equations(text()?, question["derivation"].as_str().unwrap_or(""))?,
+        "equations" => model::equations(&texts()?.source(), question["derivation"].as_str().unwrap_or(""))?,
         other => return Err(format!("nothing is known of `{other}`")),
     })
 }

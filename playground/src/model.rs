@@ -8,38 +8,37 @@ use hodograph_model::numeric::{self, State};
 use hodograph_model::source::Source;
 use hodograph_program::artifact::{self, Loaded};
 use hodograph_program::explain::{self, Format};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
-/// The mechanism of a text.
+use crate::answer::object;
+
+/// The mechanism of a model.
 ///
 /// # Errors
 ///
 /// The first mistake, with its line.
-pub fn read(text: &str) -> Result<Mechanism, String> {
-    let source = Source::file("model.mech", text);
-    let checked = check::check(&source);
+pub fn read(source: &Source) -> Result<Mechanism, String> {
+    let checked = check::check(source);
     let first = || {
         let error = checked.diagnostics.iter().find(|found| found.severity == Severity::Error)?;
-        let before = text.get(..error.primary.span.start as usize)?;
-        Some(format!("{}, line {}: {}", error.code.0, before.matches('\n').count() + 1, error.message))
+        let (file, _) = source.locate(error.primary.span);
+        let line = source.location(error.primary.span)?.line;
+        Some(format!("{}, {} line {line}: {}", error.code.0, file.name(), error.message))
     };
     let first = first();
     checked.mechanism.ok_or_else(|| first.unwrap_or_else(|| "the model has mistakes".to_owned()))
 }
 
 /// Whether a model depends on time by itself.
-pub fn depends_on_time(text: &str) -> bool {
-    let source = Source::file("model.mech", text);
-    let tokens = check::analyse(&source).tokens;
-    let all = source.expansion().map_or(&tokens, |expansion| &expansion.tokens);
-    all.iter().any(|token| token.text == "t")
+pub fn depends_on_time(source: &Source) -> bool {
+    source.tokens().is_ok_and(|tokens| tokens.iter().any(|token| token.text == "t"))
 }
 
-/// What is kept as the derivation of a text.
-pub fn derivation(text: &str, kept: &str) -> Loaded {
+/// What is kept as the derivation of a model.
+pub fn derivation(source: &Source, kept: &str) -> Loaded {
     match kept {
         "" => Loaded::Absent,
-        kept => artifact::load_text(kept, &Source::file("model.mech", text)),
+        kept => artifact::load_text(kept, source),
     }
 }
 
@@ -48,13 +47,13 @@ pub fn derivation(text: &str, kept: &str) -> Loaded {
 /// # Errors
 ///
 /// There is no derivation of this text.
-pub fn equations(text: &str, kept: &str) -> Result<Value, String> {
-    let mechanism = read(text)?;
-    let program = derivation(text, kept).program().map_err(|fault| {
+pub fn equations(source: &Source, kept: &str) -> Result<Value, String> {
+    let mechanism = read(source)?;
+    let program = derivation(source, kept).program().map_err(|fault| {
         format!("the derivation {fault}: `hodograph derive` writes it beside the model, and `hodograph serve` brings both")
     })?;
     let page = explain::explain(&mechanism, &program, &explain::usual(&program), Format::Html);
-    Ok(json!({ "page": page }))
+    Ok(object!({ "page": page }))
 }
 
 /// Quantities by name, as a question gives them.

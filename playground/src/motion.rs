@@ -2,14 +2,16 @@
 
 use hodograph::{Contacts, Surface};
 use hodograph_animation::{Recorded, Recording, Setup, Span, Watch, follow};
-use hodograph_interpreter::motion::{GivenSurface, STEP, greatest_step, surfaces};
+use hodograph_interpreter::motion::{GivenSurface, STEP, surfaces};
 use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_model::numeric::State;
+use hodograph_model::source::Source;
 use hodograph_program::artifact::Loaded;
 use hodograph_simulation::{ContactLaw, Event, EventKind, Options, Simulation, SimulationError};
 use serde_json::{Value, json};
 
+use crate::answer::object;
 use crate::collision::law;
 use crate::{GoOn, model};
 
@@ -65,7 +67,7 @@ impl Watch<End> for Keeper<'_, '_> {
             let surface = self.surfaces.iter().find(|(of, _)| *of == contact).map(|(_, surface)| surface);
             let m = &struck.outcome.reduced;
             if let Some(surface) = surface {
-                self.collisions.push(json!({
+                self.collisions.push(object!({
                     "event": shown,
                     "matrix": [m.nn, m.nt, m.ns, m.tt, m.ts, m.ss],
                     "approach": struck.outcome.approach.as_slice(),
@@ -75,9 +77,9 @@ impl Watch<End> for Keeper<'_, '_> {
                 }));
             }
         }
-        self.events.push(json!({
+        self.events.push(object!({
             "t": event.time, "event": event.kind.name(), "contact": event.contact,
-            "q": event.coordinates, "u": event.speeds,
+            "q": event.coordinates.as_slice(), "u": event.speeds.as_slice(),
         }));
         self.look(event.time)
     }
@@ -88,8 +90,8 @@ impl Watch<End> for Keeper<'_, '_> {
 /// # Errors
 ///
 /// A sentence: the model has mistakes, the numbers are impossible, a contact has no surface.
-pub fn motion(text: &str, question: &Value, go_on: GoOn<'_>) -> Result<Value, String> {
-    let mechanism = model::read(text)?;
+pub fn motion(source: &Source, question: &Value, go_on: GoOn<'_>) -> Result<Value, String> {
+    let mechanism = model::read(source)?;
     let start = model::start(&mechanism, question)?;
     let free: Vec<f64> = mechanism
         .parameters
@@ -98,14 +100,14 @@ pub fn motion(text: &str, question: &Value, go_on: GoOn<'_>) -> Result<Value, St
         .filter(|(parameter, _)| !parameter.fixed)
         .map(|(_, value)| *value)
         .collect();
-    let kept = model::derivation(text, question["derivation"].as_str().unwrap_or(""));
+    let kept = model::derivation(source, question["derivation"].as_str().unwrap_or(""));
     if let Loaded::Fresh(program) = kept {
-        let step = greatest_step(&program, false);
         let interpreted = InterpretedMechanism::with_parameters(mechanism.clone(), *program, &free)
             .map_err(|error| error.to_string())?;
+        let step = interpreted.greatest_step(false);
         return followed(&interpreted, &mechanism, &start, question, step, "derivation", go_on);
     }
-    let step = if model::depends_on_time(text) { STEP_OF_TIME } else { f64::INFINITY };
+    let step = if model::depends_on_time(source) { STEP_OF_TIME } else { f64::INFINITY };
     let numeric = NumericMechanism::with_parameters(mechanism.clone(), &free).map_err(|e| e.to_string())?;
     followed(&numeric, &mechanism, &start, question, step, "numeric", go_on)
 }
@@ -182,8 +184,8 @@ fn followed(
     };
     let times = shown.times.clone();
     shown.thin();
-    Ok(json!({
-        "animation": shown, "times": times, "states": states, "events": events,
+    Ok(object!({
+        "animation": json!(shown), "times": times, "states": json!(states), "events": events,
         "collisions": collisions, "road": road, "stopped": stopped, "ended": fault,
     }))
 }

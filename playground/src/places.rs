@@ -1,7 +1,9 @@
 //! Bytes of a text, and places in it as JavaScript counts them.
 
 use hodograph_language::Span;
-use serde_json::{Value, json};
+use serde_json::Value;
+
+use crate::answer::object;
 
 /// Converts between bytes and units of UTF-16.
 pub struct Places<'a> {
@@ -51,7 +53,7 @@ impl<'a> Places<'a> {
     pub fn edits(&self, edits: &[hodograph_language::text::Edit]) -> Value {
         let one = |edit: &hodograph_language::text::Edit| {
             let [from, to] = self.span(edit.span);
-            json!({ "from": from, "to": to, "insert": edit.text })
+            object!({ "from": from, "to": to, "insert": edit.text.as_str() })
         };
         edits.iter().map(one).collect()
     }

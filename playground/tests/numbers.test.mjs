@@ -116,14 +116,38 @@ for (const name of CASES) {
   });
 }
 
+test("twenty states have the kinetic energies of every door, to the bit", async () => {
+  const ask = await load();
+  const path = new URL("../../tests/data/doors/planar_double_pendulum.csv", import.meta.url);
+  const [head, ...rows] = readFileSync(path, "utf8")
+    .trim()
+    .split("\n")
+    .map((line) => line.split(","));
+  assert.equal(rows.length, 20);
+  for (const row of rows) {
+    const values = Object.fromEntries(head.slice(0, 4).map((name, index) => [name, Number(row[index])]));
+    const answer = ask({
+      ask: "move",
+      text: text("planar_double_pendulum.mech"),
+      derivation: text("planar_double_pendulum.derivation"),
+      values,
+      until: 0.001,
+      surface,
+    });
+    assert.equal(answer.fault, undefined, answer.fault);
+    const kinetic = answer.animation.series.find((one) => one.name === "kinetic");
+    assert.equal(kinetic.values[0], Number(row[6]));
+  }
+});
+
 test("every model of the gallery is described, checked without mistakes, and moves", async () => {
   const ask = await load();
   const { examples } = await import("./built.mjs");
-  for (const { name, text } of examples) {
-    const checked = ask({ ask: "check", text });
+  for (const { name, text, files } of examples) {
+    const checked = ask({ ask: "check", text, files });
     assert.equal(checked.errors, false, name);
-    assert.ok(ask({ ask: "describe", text }).quantities.length > 0, name);
-    const moved = ask({ ask: "move", text, until: 0.02, tolerance: 1e-6, surface });
+    assert.ok(ask({ ask: "describe", text, files }).quantities.length > 0, name);
+    const moved = ask({ ask: "move", text, files, until: 0.02, tolerance: 1e-6, surface });
     assert.equal(moved.fault, undefined, `${name}: ${moved.fault}`);
     assert.ok(moved.times.length >= 3, name);
   }
@@ -150,6 +174,23 @@ test("a motion that is told to end says where it did, and what is no question is
   const numbers = { ask: "move", text: pendulum, values: { m: -1 } };
   assert.match(ask(numbers).fault, /Rod/);
   assert.match(ask({ ask: "move", text: pendulum, surface: { e: 2 } }).fault, /restitution/);
+});
+
+test("what is no model is answered, whatever it is", async () => {
+  const ask = await load();
+  const texts = ["\u0000\u0001\ufffdPK\u0003\u0004", "x".repeat((4 << 20) + 1), "a\rb\rc", "(".repeat(100_000), "\ufeff", "\ud800"];
+  for (const text of texts) {
+    for (const question of ["check", "complete", "hover", "format", "describe", "move"]) {
+      const answer = ask({ ask: question, text, at: 1, files: { "a.mech": text } });
+      if (answer?.fault === undefined && question === "check") assert.ok(answer.findings.length > 0, text.slice(0, 5));
+      if (["describe", "move"].includes(question)) assert.equal(typeof answer.fault, "string", text.slice(0, 5));
+    }
+  }
+  // a file that imports itself, and one that is missing
+  const text = 'mechanism A;\nimport "a.mech";\nimport "b.mech";\n';
+  const { findings } = ask({ ask: "check", text, files: { "a.mech": 'import "a.mech";\npart P() { }\n' } });
+  const there = findings.map((found) => [found.code, found.there?.file ?? ""].join(" "));
+  assert.ok(there.includes("E091 a.mech") && there.includes("E090 "), there.join());
 });
 
 test("the language service counts as JavaScript does", async () => {

@@ -1,51 +1,24 @@
 // The page in headless Chromium: from disk and from a server, at the widths of a laptop, a tablet and a phone.
 
 import assert from "node:assert/strict";
-import { existsSync, readFileSync } from "node:fs";
-import { createServer } from "node:http";
+import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
-import puppeteer from "puppeteer-core";
+import * as shared from "./browser.mjs";
+import { FILE, dist, launch, moved, movesOn, put, serve, status, text } from "./browser.mjs";
 
-const dist = new URL("../dist/", import.meta.url);
-const FILE = new URL("hodograph.html", dist).href;
-const named = process.env.HODOGRAPH_CHROMIUM;
-const executablePath =
-  named || ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
 const WIDTHS = [1280, 768, 390];
 /** Compressed, in bytes: of the module, and of the folder with the editor. A change that needs more says so here. */
-const MOST = { module: 705_000, folder: 838_000 };
-const kinds = { html: "text/html", css: "text/css", js: "text/javascript", wasm: "application/wasm" };
+const MOST = { module: 745_000, folder: 880_000 };
 
 let browser;
 before(async () => {
-  browser = await puppeteer.launch({
-    executablePath,
-    args: ["--no-sandbox", "--disable-gpu", "--force-prefers-reduced-motion=0"],
-  });
+  browser = await launch();
 });
 after(() => browser.close());
 
-const open = async (address, { width = 1280, still = false } = {}) => {
-  const page = await browser.newPage(),
-    asked = [];
-  page.on("request", (request) => asked.push(request.url()));
-  page.on("pageerror", (error) => asked.push(`error: ${error.message}`));
-  await page.setViewport({ width, height: width < 500 ? 844 : 900 });
-  await page.emulateMediaFeatures([
-    { name: "prefers-reduced-motion", value: still ? "reduce" : "no-preference" },
-  ]);
-  await page.goto(address);
-  await page.waitForFunction(() => document.body.dataset.moved, { timeout: 60_000 });
-  return { page, asked };
-};
-const moved = (page) => page.evaluate(() => Number(document.body.dataset.moved));
-const status = (page) => page.$eval("#status", (node) => node.textContent);
-const movesOn = (page, from) =>
-  page.waitForFunction((from) => Number(document.body.dataset.moved) > from, { timeout: 60_000 }, from);
+const open = (address, options) => shared.open(browser, address, options);
 const place = (page) =>
   page.$$eval("#stage .point", (all) => all.map((node) => node.getAttribute("cx")).join());
-const put = (page, text) => page.evaluate((text) => globalThis.hodograph.editor.replace(text), text);
-const text = (page) => page.evaluate(() => globalThis.hodograph.editor.text());
 
 test("sizes stay within their limits", () => {
   const { parts, folder } = JSON.parse(readFileSync(new URL("sizes.json", dist), "utf8"));
@@ -176,6 +149,136 @@ test("sliders change the motion, and an address holds model and numbers", async 
   await nonsense.close();
 });
 
+test("a model of several files: mistakes at their places, fixes, and an address that holds all", async () => {
+  const { page } = await open(FILE);
+  const chain = `mechanism Chain;
+import "parts/rod.mech";
+parameters { g: m/s^2 = 9.81 }
+loads { gravity: -g*N.y; }
+use Rod as a(hinge: O, base: N);
+use Rod as b(hinge: a.tip, base: a.B);
+`;
+  // what is imported and not there can be made
+  let before = await moved(page);
+  await put(page, chain);
+  await page.waitForFunction(() => /E090, line 2/.test(document.querySelector("#problems").textContent), { timeout: 20_000 });
+  await page.click("#problems button");
+  await page.hover(".cm-lint-marker-error");
+  await page.waitForSelector(".cm-diagnosticAction");
+  assert.equal(await page.$eval(".cm-diagnosticAction", (node) => node.textContent), "Make the file parts/rod.mech");
+  await page.click(".cm-diagnosticAction");
+  await movesOn(page, before);
+  const tabs = () => page.$$eval("#files [role=tab]", (all) => all.map((node) => `${node.textContent} ${node.ariaSelected}`));
+  assert.deepEqual(await tabs(), ["model.mech false", "parts/rod.mech true"]);
+  // a mistake in the part stands there, and names its file
+  await page.evaluate(() => {
+    const { view } = globalThis.hodograph.editor;
+    const from = view.state.doc.toString().indexOf("l*B.y");
+    view.dispatch({ changes: { from, to: from + 1, insert: "ll" } });
+  });
+  await page.waitForFunction(() => document.body.dataset.errors === "1", { timeout: 20_000 });
+  assert.match(await page.$eval("#problems", (node) => node.textContent), /^E020, parts\/rod.mech line 7: .*ll/);
+  await page.waitForSelector(".cm-lintRange-error");
+  await page.click("#files [role=tab]");
+  await page.waitForFunction(() => document.querySelectorAll(".cm-lintRange-error").length > 0);
+  // its fix is offered at the use, and changes the part
+  before = await moved(page);
+  const fixed = await page.evaluate(async () => {
+    const { words, editor } = globalThis.hodograph;
+    const answer = await words.ask({ ...editor.asked(0), ask: "check" });
+    return answer.findings[0].fixes[0];
+  });
+  assert.deepEqual([fixed.title, fixed.file], ["Change to `l`", "parts/rod.mech"]);
+  await page.click("#problems button");
+  assert.deepEqual(await tabs(), ["model.mech false", "parts/rod.mech true"]);
+  await page.keyboard.type("l");
+  await movesOn(page, before);
+  // F12 leads from the use into the part
+  await page.click("#files [role=tab]");
+  await page.evaluate(() => {
+    const { view } = globalThis.hodograph.editor;
+    view.focus();
+    view.dispatch({ selection: { anchor: view.state.doc.toString().indexOf("Rod as b") } });
+  });
+  await page.keyboard.press("F12");
+  await page.waitForFunction(() => globalThis.hodograph.editor.active() === 1);
+  // F2 changes a name of the part in both texts, and each text is undone by itself
+  const texts = () => page.evaluate(() => [0, 1].map((i) => globalThis.hodograph.editor.asked(i).text));
+  const [, rod] = await texts();
+  before = await moved(page);
+  page.once("dialog", (dialog) => dialog.accept("pivot"));
+  await page.evaluate(() => {
+    const { view } = globalThis.hodograph.editor;
+    view.dispatch({ selection: { anchor: view.state.doc.toString().indexOf("hinge: point") } });
+  });
+  await page.keyboard.press("F2");
+  await page.waitForFunction(() => globalThis.hodograph.editor.text().includes("a(pivot: O"));
+  assert.deepEqual(await texts(), [chain.replaceAll("hinge:", "pivot:"), rod.replace("hinge: point", "pivot: point").replace("= hinge", "= pivot")]);
+  await movesOn(page, before);
+  const undo = async () => {
+    await page.keyboard.down("Control");
+    await page.keyboard.press("z");
+    await page.keyboard.up("Control");
+  };
+  await undo();
+  await page.click("#files [role=tab]");
+  await page.evaluate(() => globalThis.hodograph.editor.view.focus());
+  await undo();
+  assert.deepEqual(await texts(), [chain, rod]);
+  await page.click("#share");
+  await page.waitForFunction(() => location.hash.startsWith("#m="));
+  const address = page.url();
+  await page.close();
+  const { page: other } = await open(address);
+  assert.deepEqual(await other.evaluate(() => globalThis.hodograph.editor.names()), ["model.mech", "parts/rod.mech"]);
+  assert.equal(await text(other), chain);
+  assert.match(await status(other), /moments/);
+  await other.close();
+});
+
+test("each of several contacts has numbers of its own", async () => {
+  const { page } = await open(FILE);
+  const two = (await text(page)).replace(
+    /contacts \{[\s\S]*$/,
+    `contacts {
+    left { point: P of Rod, normal: N.x, gap: dot(position(P), N.x) + w, surface: { mu: 0.3, e: 0.7, law: stronge } },
+    right { point: P of Rod, normal: -N.x, gap: w - dot(position(P), N.x), surface: { mu: 0.1, e: 0.4, law: newton } }
+}
+`,
+  );
+  let before = await moved(page);
+  await put(page, two);
+  await movesOn(page, before);
+  const used = () =>
+    page.evaluate(() => {
+      const { collisions, animation } = globalThis.hodograph.latest();
+      const found = {};
+      for (const one of collisions) found[animation.events[one.event].contact] ??= [one.mu, one.e, one.law];
+      return found;
+    });
+  assert.deepEqual(await used(), { left: [0.3, 0.7, "stronge"], right: [0.1, 0.4, "newton"] });
+  const set = async (id, value) => {
+    before = await moved(page);
+    await page.$eval(
+      id,
+      (node, value) => {
+        node.value = value;
+        node.dispatchEvent(new Event(node.localName === "select" ? "change" : "input", { bubbles: true }));
+      },
+      value,
+    );
+    await movesOn(page, before);
+  };
+  await set("#c-left-restitution-e", 0.25);
+  await set("#law-right", "poisson");
+  assert.deepEqual(await used(), { left: [0.3, 0.25, "stronge"], right: [0.1, 0.4, "poisson"] });
+  // that of all contacts holds where none is set
+  await set("#c-restitution-e", 0.5);
+  assert.deepEqual(await used(), { left: [0.3, 0.25, "stronge"], right: [0.1, 0.5, "poisson"] });
+  assert.equal(await page.$eval("#c-right-restitution-e", (node) => Number(node.value)), 0.5);
+  await page.close();
+});
+
 test("events are stepped through, and the hodograph is that of the collision", async () => {
   const { page } = await open(FILE);
   await page.waitForSelector("#course svg");
@@ -224,8 +327,15 @@ test("a motion that takes too long is stopped and says so, and typing goes on me
 });
 
 test("the page fits its window, can be read, and every control has a name", async () => {
-  for (const width of WIDTHS) {
-    const { page } = await open(FILE, { width });
+  for (const [width, scheme] of WIDTHS.flatMap((width) => [[width, "light"], [width, "dark"]])) {
+    const { page } = await open(FILE, { width, scheme });
+    // with a mistake and a warning, whose colours are others
+    await page.evaluate(() => {
+      const { editor } = globalThis.hodograph;
+      editor.replace(editor.text().replace("m: kg = 1,", "m: kg = 1, spare: kg = 2,").replace("q1); }", "qq1); }"));
+    });
+    await page.waitForFunction(() => document.body.dataset.errors === "1", { timeout: 20_000 });
+    await page.waitForSelector(".cm-lintRange-error");
     const wrong = await page.evaluate(() => {
       const found = [];
       if (document.documentElement.scrollWidth > innerWidth)
@@ -271,7 +381,7 @@ test("the page fits its window, can be read, and every control has a name", asyn
       }
       return found;
     });
-    assert.deepEqual(wrong, [], `at ${width}`);
+    assert.deepEqual(wrong, [], `at ${width}, ${scheme}`);
     await page.close();
   }
 });
@@ -311,21 +421,12 @@ test("who wants less motion sees a still picture", async () => {
 });
 
 test("a web server serves the folder", async () => {
-  const server = createServer((request, response) => {
-    const name = request.url === "/" ? "index.html" : request.url.slice(1);
-    const file = new URL(`site/${name}`, dist);
-    if (!existsSync(file)) return response.writeHead(404).end();
-    response
-      .writeHead(200, { "content-type": kinds[name.split(".").pop()] || "text/plain" })
-      .end(readFileSync(file));
-  });
-  await new Promise((done) => server.listen(0, "127.0.0.1", done));
-  const home = `http://127.0.0.1:${server.address().port}/`;
+  const { home, end } = await serve();
   const { page, asked } = await open(home);
   assert.deepEqual(
     asked.filter((url) => !url.startsWith(home) && !url.startsWith("blob:") && !url.startsWith("data:")),
     [],
   );
   await page.close();
-  server.close();
+  end();
 });

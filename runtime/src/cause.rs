@@ -18,8 +18,8 @@ pub enum Cause {
     NotFinite,
     /// A slice has the wrong length.
     WrongLength,
-    /// There is no component of that number.
-    Missing,
+    /// The model has no component of that name or number.
+    UnknownName,
     /// The model does not determine the quantity.
     Undefined,
     /// A mass is not positive.
@@ -52,13 +52,17 @@ pub enum Cause {
     Jam,
     /// No mode of the contact fits.
     NoMode,
+    /// No hypothesis of restitution has that name or number.
+    UnknownLaw,
+    /// A contact that can close has no surface: no mu, e or law.
+    NoSurface,
 }
 
 table! { Cause
     SingularState "singular_state" "the state is singular",
     NotFinite "not_finite" "a number that went in, or the answer, is not finite",
     WrongLength "wrong_length" "there are too many or too few numbers",
-    Missing "missing" "there is no component of that number",
+    UnknownName "unknown_name" "the model has no component of that name or number",
     Undefined "undefined" "the model does not determine the quantity",
     ImpossibleMass "impossible_mass" "a mass is not positive",
     ImpossibleInertia "impossible_inertia" "no body has the inertia",
@@ -75,4 +79,6 @@ table! { Cause
     ImpactWithoutCollision "impact_without_collision" "no finite force satisfies Coulomb's law: an impact without collision follows",
     Jam "jam" "the contact jams: the force grows without bound",
     NoMode "no_mode" "no mode of the contact fits",
+    UnknownLaw "unknown_law" "no hypothesis of restitution has that name or number",
+    NoSurface "no_surface" "a contact that can close has no surface",
 }

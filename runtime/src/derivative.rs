@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
 
 use crate::{
-    Impact, ImpactError, Law, Path, ReducedMatrix, Scalar, Surface,
+    Impact, ImpactError, Path, ReducedMatrix, Scalar, Surface,
     dual::Dual,
     scalar::constant,
     solve,
@@ -242,11 +242,7 @@ fn plastic<T: Scalar>(
     };
     let rates = matrix.apply(&push);
     let rate = rates.x;
-    let more = match surface.law {
-        Law::Newton => -approach.x / rate,
-        Law::Poisson => impact.impulse.x,
-        Law::Stronge => (-(impact.normal_work + impact.normal_work) / rate).sqrt(),
-    };
+    let more = surface.law.rebound_by_e(-approach.x, impact.impulse.x, impact.normal_work, rate);
     if more.is_finite() {
         result.impulse.set_column(10, &(push * more));
         result.velocity.set_column(10, &(rates * more));

@@ -78,6 +78,58 @@ pub enum ImpactError<T> {
     },
 }
 
+/// A text, or a number, by which no hypothesis of restitution goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct UnknownLaw<'a> {
+    /// What was given.
+    pub name: &'a str,
+}
+
+impl UnknownLaw<'_> {
+    /// Its cause.
+    pub const fn cause(&self) -> Cause {
+        Cause::UnknownLaw
+    }
+
+    /// A stable lower-case name.
+    pub const fn kind(&self) -> &'static str {
+        self.cause().name()
+    }
+}
+
+impl fmt::Display for UnknownLaw<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "there is no law `{}`: give one of ", self.name)?;
+        for (place, name) in Law::NAMES.iter().enumerate() {
+            out.write_str(if place > 0 { ", " } else { "" })?;
+            out.write_str(name)?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for UnknownLaw<'_> {}
+
+impl Law {
+    /// The law of this name, as [`Law::named`], or an error that says which there are.
+    ///
+    /// ```
+    /// use hodograph::Law;
+    /// assert_eq!(Law::read("poisson"), Ok(Law::Poisson));
+    /// let error = Law::read("hooke").unwrap_err();
+    /// assert_eq!(error.to_string(), "there is no law `hooke`: give one of newton, poisson, stronge");
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownLaw`].
+    pub fn read(name: &str) -> Result<Self, UnknownLaw<'_>> {
+        Self::named(name).ok_or(UnknownLaw { name })
+    }
+}
+
 /// The laws that every outcome is checked against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -176,10 +228,11 @@ impl<T: fmt::Debug + fmt::Display> fmt::Display for ImpactError<T> {
                 out,
                 "the contact wedges at normal velocity {normal_velocity}: no impulse ends the collision under {law:?}'s hypothesis; \
                  lower the friction{}",
-                match law {
-                    // It ends a collision that jams with v_n = 0, but not one that is still approaching.
-                    Law::Poisson => "",
-                    Law::Newton | Law::Stronge => " or, if the bodies merely jam, use Poisson's hypothesis",
+                // Poisson's ends a collision that jams with v_n = 0, but not one that is still approaching.
+                if *law == Law::Poisson {
+                    ""
+                } else {
+                    " or, if the bodies merely jam, use Poisson's hypothesis"
                 }
             ),
             Self::BudgetExceeded { quadratures, normal_velocity } => write!(

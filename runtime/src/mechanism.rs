@@ -12,7 +12,7 @@ mod error;
 pub(crate) mod slices;
 
 pub use closed::ContactOutcome;
-pub use contacts::{ClosedContacts, CollisionOutcome, ContactState, Contacts, RelativeRotation};
+pub use contacts::{ClosedContacts, CollisionOutcome, ContactState, Contacts, Distance, RelativeRotation};
 pub use description::{Component, ComponentKind};
 pub use error::{ClosedContactError, CollisionError, ParameterError, StateError};
 

@@ -21,17 +21,18 @@ fn semidefinite(random: &mut Random, rank: usize) -> Matrix3<f64> {
     matrix
 }
 
-/// How far an answer is from mechanics: Newton's law, the cone, complementarity, friction against slip.
+/// How far an answer is from mechanics: Newton's law, the cone, complementarity, friction against slip. `terms` are those
+/// of the free acceleration, whose roundings it holds.
 fn wrong(
     m: &Matrix3<f64>,
-    beta: &Vector3<f64>,
+    (beta, terms): (&Vector3<f64>, f64),
     slip: &Vector2<f64>,
     mu: f64,
     answer: &ContactForce<f64>,
 ) -> f64 {
     let force = answer.force;
     // Of the terms, for forces of a nearly wedged contact are large.
-    let size = beta.amax() + (m.abs() * force.abs()).amax();
+    let size = terms + (m.abs() * force.abs()).amax();
     let mut worst = (m * force + beta - answer.acceleration).amax() / size;
     // The cone: friction fully used while slipping.
     let friction = Vector2::new(force.y, force.z);
@@ -63,46 +64,57 @@ fn wrong(
     worst
 }
 
-/// 100 000 random states of all ranks, with and without slip: each has an answer or a reason, and each answer
-/// obeys mechanics.
+/// 100 000 random states of all ranks from each of two seeds, with and without slip: each has an answer or a reason, and
+/// each answer obeys mechanics. Among those of seed 8 is a contact with little friction that wedges.
 #[test]
 fn every_state_has_an_answer_or_a_reason() {
-    let mut random = Random::new(1);
-    let (mut reasons, mut modes) = ([0; 2], [0; 4]);
-    for case in 0..100_000 {
-        let rank = 1 + case % 3;
-        let m = semidefinite(&mut random, rank) * 10f64.powf(random.between(-6.0, 6.0));
-        let slips = case % 2 == 0;
-        // A contact of rank 1 or 2 has motions only that its matrix reaches.
-        let reach = |v: Vector3<f64>| if rank < 3 { m * v / m.amax() } else { v };
-        let slip = if slips {
-            let v = reach(vector(&mut random));
-            Vector2::new(v.y, v.z)
-        } else {
-            Vector2::zeros()
-        };
-        let beta = reach(vector(&mut random)) * 10f64.powf(random.between(-3.0, 3.0));
-        let mu = if case % 7 == 0 { 0.0 } else { random.between(0.0, 2.5) };
-        match contact_mode(&ReducedMatrix::from(m), &beta, &slip, mu) {
-            Ok(answer) => {
-                modes[answer.mode as usize] += 1;
-                let worst = wrong(&m, &beta, &slip, mu, &answer);
-                assert!(worst < 1e-12, "case {case}: {worst:e}: {answer:?} of {m} {beta} {slip} {mu}");
-                assert_eq!(
-                    slips,
-                    matches!(answer.mode, ContactMode::Slide)
-                        || (slips && answer.mode == ContactMode::Separate)
-                );
+    for (seed, numbers) in [
+        (1, ([49_978, 20_051, 14_460, 10_605], [4906, 0])),
+        (8, ([49_629, 20_289, 14_572, 10_619], [4891, 0])),
+    ] {
+        let mut random = Random::new(seed);
+        let (mut reasons, mut modes) = ([0; 2], [0; 4]);
+        for case in 0..100_000 {
+            let rank = 1 + case % 3;
+            let m = semidefinite(&mut random, rank) * 10f64.powf(random.between(-6.0, 6.0));
+            let slips = case % 2 == 0;
+            // A contact of rank 1 or 2 has motions only that its matrix reaches.
+            let reach = |v: Vector3<f64>| if rank < 3 { m * v / m.amax() } else { v };
+            let slip = if slips {
+                let v = reach(vector(&mut random));
+                Vector2::new(v.y, v.z)
+            } else {
+                Vector2::zeros()
+            };
+            let (free, power) = (vector(&mut random), 10f64.powf(random.between(-3.0, 3.0)));
+            let beta = reach(free) * power;
+            let terms = if rank < 3 { (m.abs() * free.abs()).amax() / m.amax() } else { free.amax() };
+            let mu = if case % 7 == 0 { 0.0 } else { random.between(0.0, 2.5) };
+            match contact_mode(&ReducedMatrix::from(m), &beta, &slip, mu) {
+                Ok(answer) => {
+                    modes[answer.mode as usize] += 1;
+                    let worst = wrong(&m, (&beta, terms * power), &slip, mu, &answer);
+                    assert!(
+                        worst < 1e-12,
+                        "seed {seed} case {case}: {worst:e}: {answer:?} of {m} {beta} {slip} {mu}"
+                    );
+                    assert_eq!(
+                        slips,
+                        matches!(answer.mode, ContactMode::Slide)
+                            || (slips && answer.mode == ContactMode::Separate)
+                    );
+                }
+                Err(ContactError::ImpactWithoutCollision { f, free_acceleration }) => {
+                    reasons[0] += 1;
+                    assert!(slips && f < 0.0 && free_acceleration < 0.0);
+                }
+                Err(ContactError::Jam { .. }) => reasons[1] += 1,
+                Err(other) => panic!("seed {seed} case {case}: {other:?} of {m} {beta} {slip} {mu}"),
             }
-            Err(ContactError::ImpactWithoutCollision { f, free_acceleration }) => {
-                reasons[0] += 1;
-                assert!(slips && f < 0.0 && free_acceleration < 0.0);
-            }
-            Err(ContactError::Jam { .. }) => reasons[1] += 1,
-            Err(other) => panic!("case {case}: {other:?} of {m} {beta} {slip} {mu}"),
         }
+        println!("{seed}: {modes:?} {reasons:?}");
+        assert_eq!((modes, reasons), numbers, "{seed}");
     }
-    assert_eq!((modes, reasons), ([49_978, 20_051, 14_460, 10_605], [4906, 0]));
 }
 
 /// How many modes fit, by enumeration with a fine search for the direction in which slip begins: a second
@@ -132,35 +144,43 @@ fn fitting(m: &Matrix3<f64>, beta: &Vector3<f64>, mu: f64) -> usize {
     count
 }
 
-/// Random contacts without slip (theory, section 17.3): where mu |b| < m_nn one mode fits, but for rare
-/// contacts near that bound, of which none is drawn here; elsewhere at least one fits, and rarely several.
+/// Whether (17.7) holds: sufficient for one mode of a contact without slip that is pressed together.
+fn has_one(m: &Matrix3<f64>, beta: &Vector3<f64>) -> bool {
+    let (b, tangential) = (Vector2::new(m.m21, m.m31), beta.yz());
+    let least = m.fixed_view::<2, 2>(1, 1).symmetric_eigenvalues().min();
+    beta.x > 0.0 || tangential.norm() * b.norm() - tangential.dot(&b) < -2.0 * beta.x * least
+}
+
+/// Random contacts without slip (theory, section 17.3): where mu |b| < m_nn and (17.7) holds one mode fits, and without
+/// (17.7) rarely several; elsewhere at least one fits, and rarely several. A search tells the same.
 #[test]
 fn one_mode_fits_where_friction_is_moderate() {
-    let mut random = Random::new(7);
-    let (mut moderate, mut strong, mut several) = (0, 0, 0);
-    for case in 0..4000 {
-        let m = semidefinite(&mut random, 3);
-        let beta = vector(&mut random);
-        let mu = random.between(0.0, 2.5);
-        let answer = contact_mode(&ReducedMatrix::from(m), &beta, &Vector2::zeros(), mu).unwrap();
-        if mu * Vector2::new(m.m21, m.m31).norm() < m.m11 {
-            moderate += 1;
-            assert_eq!(answer.selection, Selection::Unique, "case {case}");
-            // The search is slow: a share of the cases.
-            if case % 40 == 0 {
-                assert_eq!(fitting(&m, &beta, mu), 1, "case {case}");
-            }
-        } else {
-            strong += 1;
+    for (seed, numbers) in [(7, [2347, 0, 1653, 114]), (11, [2288, 1, 1712, 93])] {
+        let mut random = Random::new(seed);
+        let (mut moderate, mut rare, mut strong, mut several) = (0, 0, 0, 0);
+        for case in 0..4000 {
+            let m = semidefinite(&mut random, 3);
+            let beta = vector(&mut random);
+            let mu = random.between(0.0, 2.5);
+            let answer = contact_mode(&ReducedMatrix::from(m), &beta, &Vector2::zeros(), mu).unwrap();
             let one = answer.selection == Selection::Unique;
-            several += usize::from(!one);
+            if mu * Vector2::new(m.m21, m.m31).norm() < m.m11 {
+                moderate += 1;
+                rare += usize::from(!one);
+                assert!(one || !has_one(&m, &beta), "seed {seed} case {case}");
+            } else {
+                strong += 1;
+                several += usize::from(!one);
+            }
+            // The search is slow: a share of the cases.
             if !one || case % 40 == 0 {
-                assert_eq!(fitting(&m, &beta, mu) == 1, one, "case {case}: {}", fitting(&m, &beta, mu));
+                let found = fitting(&m, &beta, mu);
+                assert_eq!(found == 1, one, "seed {seed} case {case}: {found}");
             }
         }
+        println!("{seed}: {moderate} moderate, several in {rare}, {strong} strong, several in {several}");
+        assert_eq!([moderate, rare, strong, several], numbers, "{seed}");
     }
-    println!("{moderate} moderate, {strong} strong, several in {several}");
-    assert_eq!((moderate, strong, several), (2347, 1653, 114));
 }
 
 fn turned(m: &Matrix3<f64>, angle: f64) -> (Matrix3<f64>, Matrix3<f64>) {
@@ -307,32 +327,42 @@ fn sliding_without_a_force_has_a_name() {
     assert!(matches!(none, Err(ContactError::Input(_))));
 }
 
-/// A mode that is kept has the force that would keep it; its margins change sign where it ends.
+/// A mode that is kept has the force that would keep it; its margins change sign where it ends. Where several modes fit
+/// the one that is selected after a force is that with this force.
 #[test]
 fn kept_modes_tell_their_margins() {
-    let mut random = Random::new(13);
-    let (mut ends, mut stays) = (0, 0);
-    for case in 0..5000 {
-        let m = semidefinite(&mut random, 3);
-        let (beta, mu) = (vector(&mut random), random.between(0.1, 1.0));
-        if mu * Vector2::new(m.m21, m.m31).norm() >= m.m11 {
-            continue;
+    for (seed, numbers) in [(13, [4386, 123, 0]), (20, [4383, 104, 1])] {
+        let mut random = Random::new(seed);
+        let (mut ends, mut stays, mut several) = (0, 0, 0);
+        for case in 0..5000 {
+            let m = semidefinite(&mut random, 3);
+            let (beta, mu) = (vector(&mut random), random.between(0.1, 1.0));
+            if mu * Vector2::new(m.m21, m.m31).norm() >= m.m11 {
+                continue;
+            }
+            let matrix = ReducedMatrix::from(m);
+            let selected = contact_mode(&matrix, &beta, &Vector2::zeros(), mu).unwrap();
+            let kept = contact_force(ContactMode::Stick, &matrix, &beta, &Vector2::zeros(), mu).unwrap();
+            let holds = kept.margins.lambda_n.unwrap() >= 0.0 && kept.margins.cone.unwrap() >= 0.0;
+            let one = selected.selection == Selection::Unique;
+            several += usize::from(!one);
+            let sticks = selected.mode == ContactMode::Stick;
+            assert!(if one { holds == sticks } else { holds || !sticks }, "seed {seed} case {case}");
+            assert!(kept.acceleration.amax() < 1e-10 * (1.0 + kept.force.amax() * m.amax()));
+            if holds {
+                stays += 1
+            } else {
+                ends += 1
+            }
+            let after = contact_mode_after(&matrix, &beta, &Vector2::zeros(), mu, &kept.force).unwrap();
+            assert!(
+                after.mode == if holds { ContactMode::Stick } else { selected.mode } || !(one || holds),
+                "seed {seed} case {case}"
+            );
         }
-        let matrix = ReducedMatrix::from(m);
-        let selected = contact_mode(&matrix, &beta, &Vector2::zeros(), mu).unwrap();
-        let kept = contact_force(ContactMode::Stick, &matrix, &beta, &Vector2::zeros(), mu).unwrap();
-        let holds = kept.margins.lambda_n.unwrap() >= 0.0 && kept.margins.cone.unwrap() >= 0.0;
-        assert_eq!(holds, selected.mode == ContactMode::Stick, "case {case}");
-        assert!(kept.acceleration.amax() < 1e-10 * (1.0 + kept.force.amax() * m.amax()));
-        if holds {
-            stays += 1
-        } else {
-            ends += 1
-        }
-        let after = contact_mode_after(&matrix, &beta, &Vector2::zeros(), mu, &kept.force).unwrap();
-        assert_eq!(after.mode, selected.mode);
+        println!("{seed}: {ends} end, {stays} stay, several in {several}");
+        assert_eq!([ends, stays, several], numbers, "{seed}");
     }
-    assert_eq!((ends, stays), (4386, 123));
 }
 
 /// The force is differentiated as the impact is: numbers that carry derivatives give those of the force.

@@ -90,33 +90,38 @@ fn every_rank() {
 
 /// Contacts that can move in one direction only, in turned axes, in which rounding makes their matrices
 /// regular: slip and normal velocity vanish together, and what rounding leaves of them must not be taken for
-/// a wedge.
+/// a wedge. Nor must it do the work that Stronge's law asks for: some of these, one in 20 000, had impulses of 1e11 to
+/// 1e13 times what stops the approach, where all others have 1e5 at most.
 #[test]
 fn one_direction_in_turned_axes() {
-    let mut random = Random::new(7);
-    let (mut solved, mut wedged, mut hidden) = (0, 0, 0);
-    for _ in 0..4000 {
-        let (m, v) = exact(&mut random, 1);
-        let surface = random.surface();
-        let (sin, cos) = (3.0 * random.number()).sin_cos();
-        let turned = |v: &Vector3<f64>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
-        let (ours, road) =
-            (solve(&m.turned(cos, sin), &turned(&v), &surface), second_road::solve(&m, &v, &surface));
-        match (ours, road) {
-            (Ok(hit), Ok(road)) => {
-                let error = (hit.velocity - turned(&road.velocity)).norm() / v.norm();
-                assert!(error < 1e-12, "{error:e} {m:?} {v:?} {cos:?} {sin:?} {surface:?}");
-                solved += 1;
+    for (seed, numbers) in [(7, [3347, 653]), (16, [3303, 697]), (12, [3345, 655])] {
+        let mut random = Random::new(seed);
+        let (mut solved, mut wedged) = (0, 0);
+        for _ in 0..4000 {
+            let (m, v) = exact(&mut random, 1);
+            let surface = random.surface();
+            let (sin, cos) = (3.0 * random.number()).sin_cos();
+            let turned = |v: &Vector3<f64>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
+            let (ours, road) =
+                (solve(&m.turned(cos, sin), &turned(&v), &surface), second_road::solve(&m, &v, &surface));
+            match (ours, road) {
+                (Ok(hit), Ok(road)) => {
+                    let error = (hit.velocity - turned(&road.velocity)).norm() / v.norm();
+                    // Entries that are rounded change large impulses by as much of themselves.
+                    let large = hit.impulse.amax() * m.nn / v.norm();
+                    assert!(
+                        error < 1e-12 + 32.0 * f64::EPSILON * large,
+                        "{error:e} {m:?} {v:?} {cos:?} {sin:?} {surface:?}"
+                    );
+                    solved += 1;
+                }
+                (Err(_), Err(Failure::Wedged)) => wedged += 1,
+                (ours, road) => panic!("{ours:?} {road:?} {m:?} {v:?} {cos:?} {sin:?} {surface:?}"),
             }
-            (Err(_), Err(Failure::Wedged)) => wedged += 1,
-            // The turned matrix, which is regular by rounding, has an outcome: an impulse of the inverse of
-            // rounding.
-            (Ok(hit), Err(Failure::Wedged)) if hit.impulse.amax() > 1e10 => hidden += 1,
-            (ours, road) => panic!("{ours:?} {road:?} {m:?} {v:?} {cos:?} {sin:?} {surface:?}"),
         }
+        println!("{seed}: {solved} solved, {wedged} wedged");
+        assert_eq!([solved, wedged], numbers, "{seed}");
     }
-    println!("{solved} solved, {wedged} wedged, {hidden} wedged but for rounding");
-    assert_eq!((solved, wedged, hidden), (3347, 652, 1));
 }
 
 /// Conditions to 1e8, in axes turned all round and reflected, and in units from micro to mega: each is right

@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::fmt::Debug;
 
-use hodograph::generated::{AnyLaw, KnownLaw, Newton, Poisson, Stronge, solve_inlined};
+use hodograph::generated::{AnyLaw, KnownLaw, OneLaw, solve_inlined};
 use hodograph::structure::{
     Balanced, Diagonal, Frictionless, General, Isotropic, Planar, Structure, solve_structured,
 };
@@ -28,11 +28,11 @@ fn inlined<S: Structure, T: Scalar>(
     ) -> Answer<T> {
         solve_inlined::<S, L, T>(m, v, surface)
     }
-    let known = match surface.surface().law {
-        Law::Newton => under::<S, Newton, T>(m, v, surface),
-        Law::Poisson => under::<S, Poisson, T>(m, v, surface),
-        Law::Stronge => under::<S, Stronge, T>(m, v, surface),
-        _ => panic!("a law that the specialised solver does not know: add its marker"),
+    let known = match surface.surface().law.number() {
+        0 => under::<S, OneLaw<0>, T>(m, v, surface),
+        1 => under::<S, OneLaw<1>, T>(m, v, surface),
+        2 => under::<S, OneLaw<2>, T>(m, v, surface),
+        _ => panic!("a law that this test leaves out"),
     };
     let any = under::<S, AnyLaw, T>(m, v, surface);
     same(&known, &any);

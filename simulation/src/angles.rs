@@ -1,18 +1,18 @@
-//! Which speeds and coordinates of a mechanism are angular: found once, from their units.
+//! Determines which speeds and coordinates of a mechanism are angular, from their units.
 
 use hodograph::{ComponentKind, Contacts};
 
-/// What turns.
+/// The angular speeds and coordinates of a mechanism.
 #[derive(Clone, Debug)]
 pub(crate) struct Angles {
-    /// whether each speed is an angular one
+    /// for each speed whether it is angular
     speeds: Vec<bool>,
-    /// the angle by which each coordinate turns, beside its change
+    /// for each coordinate the angle of rotation per change of the coordinate
     coordinates: Vec<f64>,
 }
 
 impl Angles {
-    /// Those of a mechanism.
+    /// The angles of a mechanism.
     pub fn of(mechanism: &dyn Contacts<f64>) -> Self {
         let unit = |kind, index| mechanism.component(kind, index).map(|component| component.unit);
         let is_angular = |unit: &str| unit.contains("rad") || unit.contains("deg");
@@ -23,7 +23,7 @@ impl Angles {
             coordinates: (0..mechanism.count(ComponentKind::Coordinate))
                 .map(|index| match unit(ComponentKind::Coordinate, index) {
                     Some("rad" | "deg") => 1.0,
-                    // A quaternion turns by half the angle.
+                    // A quaternion contains half the angle.
                     Some("1" | "") => 2.0,
                     _ => 0.0,
                 })
@@ -46,7 +46,7 @@ impl Angles {
         self.coordinates.iter().all(|weight| *weight == 0.0)
     }
 
-    /// By how much all angles together turn at these rates of the coordinates, rad/s.
+    /// The sum of the rates of all angles for these rates of the coordinates, rad/s.
     pub fn turned(&self, rates: &[f64]) -> f64 {
         rates.iter().zip(&self.coordinates).map(|(rate, weight)| (rate * weight).abs()).sum()
     }

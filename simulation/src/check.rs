@@ -1,14 +1,14 @@
 //! Checks options, surfaces and start state before a motion begins.
 
-use hodograph::{ComponentKind, Contacts, State, Surface};
+use hodograph::{Cause, ComponentKind, Contacts, ImpactError, State, StateError, Surface};
 
 use crate::pair::Pair;
 use crate::{ContactLaw, Drive, ErrorKind, Options, SimulationError};
 
-/// Below this the roundings of a step exceed what is asked for, and no step is short enough.
+/// The smallest tolerance: with a smaller one rounding exceeds the tolerance of every step.
 const LEAST_TOLERANCE: f64 = 1e-16;
 
-/// Checks options and state, and gives each contact its surfaces; a contact without a gap has none.
+/// Checks options and state, and returns the surfaces of each contact; a contact without a gap has none.
 pub(crate) fn check(
     mechanism: &dyn Contacts<f64>,
     state: &State<'_>,
@@ -41,44 +41,43 @@ pub(crate) fn check(
     {
         return bad(format!("the sampling time is {period}: it must be positive"));
     }
-    for (kind, have) in [
-        (ComponentKind::Coordinate, state.coordinates.len()),
-        (ComponentKind::Speed, state.speeds.len()),
-        (ComponentKind::Input, state.inputs.len()),
+    let argument = |contact, cause, message| Err(error(contact, ErrorKind::Argument { cause, message }));
+    for (kind, numbers) in [
+        (ComponentKind::Coordinate, state.coordinates),
+        (ComponentKind::Speed, state.speeds),
+        (ComponentKind::Input, state.inputs),
     ] {
-        let count = mechanism.count(kind);
+        let (count, have) = (mechanism.count(kind), numbers.len());
         if have != count {
-            return bad(format!("the state has {have} numbers for {count} {}s", kind.noun()));
+            let message = format!("the slice for {}s has {have} numbers: it must have {count}", kind.noun());
+            return argument(None, Cause::WrongLength, message);
         }
-    }
-    let numbers = [state.coordinates, state.speeds, state.inputs].concat();
-    if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
-        return bad(format!("a number of the start state is {value}: it must be finite"));
+        if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
+            let name = mechanism.component(kind, index).map_or("a number", |component| component.name);
+            let message = format!("{name} is {}: it must be finite", numbers[index]);
+            return argument(None, Cause::NotFinite, message);
+        }
     }
     let count = mechanism.count(ComponentKind::Contact);
     for (contact, surface) in &options.surfaces {
         if *contact >= count {
-            return bad(format!(
-                "there is a surface for contact {contact}, but the mechanism has {count} contacts"
-            ));
+            return Err(error(None, unknown(*contact)));
         }
-        if let Some(message) = wrong(surface) {
-            return Err(error(Some(*contact), ErrorKind::BadOption(message)));
+        if let Some(kind) = wrong(surface) {
+            return Err(error(Some(*contact), kind));
         }
     }
     if let Some(surface) = &options.surface
-        && let Some(message) = wrong(surface)
+        && let Some(kind) = wrong(surface)
     {
-        return bad(message);
+        return Err(error(None, kind));
     }
     if let Some((contact, _)) = options.laws.iter().find(|(contact, _)| *contact >= count) {
-        return bad(format!("there is a law for contact {contact}, but the mechanism has {count} contacts"));
+        return Err(error(None, unknown(*contact)));
     }
     for &(contact, stiffness) in &options.stiffness {
         if contact >= count {
-            return bad(format!(
-                "there is a stiffness for contact {contact}, but the mechanism has {count} contacts"
-            ));
+            return Err(error(None, unknown(contact)));
         }
         if !(stiffness.is_finite() && stiffness > 0.0) {
             let message = format!("its stiffness is {stiffness}: it must be finite and positive");
@@ -89,20 +88,16 @@ pub(crate) fn check(
     for (contact, slot) in surfaces.iter_mut().enumerate() {
         let fault = |error| SimulationError::new(mechanism, state.time, None, ErrorKind::State(error));
         let gap = mechanism.gap(contact, state).map_err(fault)?;
-        // A contact without a gap cannot be seen to close.
+        // A contact without a gap cannot be detected when it closes.
         if gap.is_none() {
             continue;
         }
         let own = options.surfaces.iter().rev().find(|(index, _)| *index == contact);
         let given = own.map(|(_, surface)| *surface).or(options.surface);
         let Some(surface) = given.or_else(|| mechanism.surface(contact)) else {
-            return Err(error(
-                Some(contact),
-                ErrorKind::BadOption(
-                    "no surface is given for it, and the model states none: it needs mu, e and a law"
-                        .to_owned(),
-                ),
-            ));
+            let name = mechanism.component(ComponentKind::Contact, contact).map_or("", |found| found.name);
+            let message = format!("contact {name} has no surface: it needs mu, e and a law");
+            return argument(None, Cause::NoSurface, message);
         };
         let own = options.laws.iter().rev().find(|(index, _)| *index == contact);
         let law = match own.map(|(_, law)| law).or(options.law.as_ref()) {
@@ -118,14 +113,24 @@ pub(crate) fn check(
     Ok(surfaces)
 }
 
-/// What is wrong with a surface.
-fn wrong(surface: &Surface<f64>) -> Option<String> {
-    let Surface { mu, e, .. } = surface;
-    if !(mu.is_finite() && *mu >= 0.0) {
-        return Some(format!("the coefficient of friction is {mu}: it must be finite and not negative"));
+/// The mistake in a surface, if any.
+fn wrong(surface: &Surface<f64>) -> Option<ErrorKind> {
+    let Surface { mu, e, .. } = *surface;
+    for (what, value) in [("friction", mu), ("restitution", e)] {
+        if !value.is_finite() {
+            let message = format!("the coefficient of {what} is {value}: it must be finite");
+            return Some(ErrorKind::Argument { cause: Cause::NotFinite, message });
+        }
     }
-    if !(*e >= 0.0 && *e <= 1.0) {
-        return Some(format!("the coefficient of restitution is {e}: it must lie between 0 and 1"));
-    }
-    None
+    let error = match () {
+        () if mu < 0.0 => ImpactError::NegativeFriction { mu },
+        () if !(0.0..=1.0).contains(&e) => ImpactError::RestitutionOutOfRange { e },
+        () => return None,
+    };
+    Some(error.into())
+}
+
+/// An option is about a contact that the mechanism does not have.
+fn unknown(contact: usize) -> ErrorKind {
+    ErrorKind::State(StateError::Missing { kind: ComponentKind::Contact, index: contact })
 }

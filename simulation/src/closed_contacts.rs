@@ -1,5 +1,5 @@
 //! Evaluates all closed contacts of a mechanism in a state together: the matrix W, the free accelerations
-//! beta and the velocities.
+//! beta, and the velocities.
 
 use hodograph::{ComponentKind, Contacts, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
@@ -8,11 +8,10 @@ use crate::angles::Angles;
 use crate::contact_problem::Problem;
 use crate::torques::WithTorques;
 
-/// Velocities of contacts whose coupling, relative to their own mobilities, is less than this do not depend on each
-/// other.
+/// Two contacts are coupled if their entry of W, relative to their own mobilities, is above this.
 const COUPLED: f64 = 1e-12;
 
-/// Which impulses couple contacts.
+/// The impulses through which contacts are coupled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Along {
     /// along the normals
@@ -21,8 +20,8 @@ pub(crate) enum Along {
     All,
 }
 
-/// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact
-/// basis.
+/// The quantities of k closed contacts. Rows and columns are ordered by contact, then n, t, s along its
+/// contact basis.
 #[derive(Clone, Debug)]
 pub(crate) struct ClosedContacts {
     /// Numbers of the contacts in the mechanism.
@@ -37,18 +36,18 @@ pub(crate) struct ClosedContacts {
     pub velocity: DVector<f64>,
     /// Free accelerations (3k).
     pub beta: DVector<f64>,
-    /// What rounding may do to these (3k); zero where nobody asked.
+    /// Bounds of the rounding errors of the free accelerations (3k); zero unless they are requested.
     pub noise: DVector<f64>,
 }
 
-/// The terms of a free acceleration are added with this rounding.
+/// The relative rounding error of the terms of a free acceleration.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
-/// Bodies that go along side by side have relative accelerations of up to so many times that rounding: normals turn by
-/// that of places over radii.
+/// Bodies that move side by side have relative accelerations of up to this many times that rounding error:
+/// their normals have the relative error of positions over radii.
 const IDLE: f64 = 128.0;
 
 impl ClosedContacts {
-    /// Room for these contacts of a mechanism: all numbers are zero.
+    /// Storage for these contacts of a mechanism, with zeros.
     pub fn room(mechanism: WithTorques<'_>, contacts: &[usize]) -> Self {
         let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
         Self {
@@ -62,7 +61,7 @@ impl ClosedContacts {
         }
     }
 
-    /// Evaluates the contacts; without `accelerate` the free accelerations stay zero.
+    /// Evaluates the contacts; without `accelerate` the free accelerations remain zero.
     pub fn new(
         mechanism: WithTorques<'_>,
         state: &State<'_>,
@@ -74,8 +73,8 @@ impl ClosedContacts {
         Ok(all)
     }
 
-    /// Evaluates the contacts with their free accelerations, and the rates of the mechanism without contact forces:
-    /// coordinates, then speeds. `numbers` is memory, used again from call to call.
+    /// Evaluates the contacts with their free accelerations, and the rates of the mechanism without contact
+    /// forces: coordinates, then speeds. `numbers` is work space that is reused from call to call.
     pub fn with_rates(
         &mut self,
         mechanism: WithTorques<'_>,
@@ -95,8 +94,9 @@ impl ClosedContacts {
         Ok(())
     }
 
-    /// What rounding does to the free accelerations. They are sums of the partial velocities times the accelerations of the
-    /// speeds, and of those times the speeds with which directions turn.
+    /// Computes bounds of the rounding errors of the free accelerations. These are sums of the partial
+    /// velocities times the accelerations of the speeds, and of velocities times the angular velocities of
+    /// directions.
     fn weigh(&mut self, angles: &Angles, speeds: &[f64], accelerations: &[f64]) {
         let turns = angles.speed(speeds);
         let p = speeds.len().max(1);
@@ -119,13 +119,13 @@ impl ClosedContacts {
         Ok(all)
     }
 
-    /// Whether nothing presses these bodies together or moves them against each other: all free accelerations are
-    /// rounding.
+    /// Whether nothing presses these bodies together or moves them relative to each other: all free
+    /// accelerations are below their rounding errors.
     pub fn is_idle(&self) -> bool {
         self.beta.iter().zip(self.noise.iter()).all(|(beta, noise)| beta.abs() <= IDLE * noise)
     }
 
-    /// The greatest force that changes no acceleration by more than rounding, N.
+    /// The greatest force that changes no acceleration by more than its rounding error, N.
     pub fn least_force(&self) -> f64 {
         let least = |i: usize| {
             let own = (3 * i..3 * i + 3).map(|row| self.coupled[(row, row)]).sum::<f64>();
@@ -145,7 +145,7 @@ impl ClosedContacts {
     ) -> Result<(), StateError> {
         let Self { contacts, coupled, partials, response, velocity, beta, .. } = self;
         let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
-        // Torques stand last.
+        // Torques come last.
         let own = contacts.iter().take_while(|&&contact| mechanism.torque(contact).is_none()).count();
         numbers.resize(3 * p * own, 0.0);
         let mut known = false;
@@ -154,7 +154,7 @@ impl ClosedContacts {
             let mut values = hodograph::ClosedContacts {
                 coordinate_rates: &mut *q,
                 accelerations: &mut u[..p],
-                // By rows V is V^T by columns.
+                // V by rows is V^T by columns.
                 partial_velocities: &mut partials.as_mut_slice()[..3 * p * own],
                 responses: &mut *numbers,
                 velocities: &mut velocity.as_mut_slice()[..3 * own],
@@ -210,7 +210,7 @@ impl ClosedContacts {
         for row in 0..3 * k {
             coupled[(row, row)] = product(row, row);
             for column in 0..row {
-                // Symmetric but for rounding.
+                // symmetric up to rounding
                 let both = product(row, column);
                 coupled[(row, column)] = both;
                 coupled[(column, row)] = both;
@@ -222,8 +222,8 @@ impl ClosedContacts {
         Ok(())
     }
 
-    /// The contacts, by place, whose velocities impulses at these change, directly or through others: bodies that
-    /// have nothing to do with an impact are left as they are.
+    /// The indices of the contacts whose velocities are changed by impulses at these contacts, directly or
+    /// through others. Bodies without connection to an impact are left unchanged.
     pub fn coupled_with(&self, struck: &[usize], along: Along) -> Vec<usize> {
         let axes = match along {
             Along::Normal => 1,
@@ -257,28 +257,28 @@ impl ClosedContacts {
         self.contacts.len()
     }
 
-    /// The reduced matrix of one.
+    /// The reduced matrix of a contact.
     pub fn reduced(&self, i: usize) -> ReducedMatrix<f64> {
         let block: Matrix3<f64> = self.coupled.fixed_view::<3, 3>(3 * i, 3 * i).into_owned();
         ReducedMatrix::from(block)
     }
 
-    /// Three entries of a vector of all contacts.
+    /// The three components of a contact in a vector of all contacts.
     pub fn three(all: &DVector<f64>, i: usize) -> Vector3<f64> {
         all.fixed_rows::<3>(3 * i).into_owned()
     }
 
-    /// The slip of one.
+    /// The slip of a contact.
     pub fn slip(&self, i: usize) -> Vector2<f64> {
         Vector2::new(self.velocity[3 * i + 1], self.velocity[3 * i + 2])
     }
 
-    /// What rounding may do to the velocity of a contact: the sizes of the terms it is made of.
+    /// A bound of the rounding error of the velocity of a contact: the sum of the magnitudes of its terms.
     pub fn velocity_size(&self, i: usize, speeds: &[f64]) -> f64 {
         (0..3).map(|row| self.row_size(3 * i + row, speeds)).fold(0.0, f64::max)
     }
 
-    /// What rounding may do to the normal velocity of a contact alone, whatever its slip is.
+    /// A bound of the rounding error of the normal velocity of a contact, independent of its slip.
     pub fn normal_size(&self, i: usize, speeds: &[f64]) -> f64 {
         self.row_size(3 * i, speeds)
     }
@@ -288,7 +288,7 @@ impl ClosedContacts {
         self.partials.as_slice()[row * p..][..p].iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum()
     }
 
-    /// The change of speeds of least kinetic energy that makes the rows of the velocity given zero.
+    /// The change of speeds with the least kinetic energy that makes these rows of the velocity zero.
     pub fn without(&self, rows: &[usize], velocity: &DVector<f64>) -> DVector<f64> {
         if rows.is_empty() {
             return DVector::zeros(self.response.nrows());
@@ -305,8 +305,8 @@ impl ClosedContacts {
     }
 }
 
-/// beta of a contact. Of a mechanism that does not give it, it is the derivative of the contact's velocity
-/// along the motion by differences of order six, good to some twelve digits.
+/// beta of a contact. If the mechanism does not provide it, it is the derivative of the contact velocity
+/// along the motion by finite differences of order six, accurate to some twelve digits.
 pub(crate) fn free_acceleration(
     mechanism: &dyn Contacts<f64>,
     contact: usize,
@@ -337,17 +337,17 @@ pub(crate) fn free_acceleration(
 /// Step of the differences, s.
 const DIFFERENCE: f64 = 1e-3;
 
-/// Below this ratio to the greatest one a pivot counts as zero. Within a step the contacts of an
-/// overdetermined support lie in their plane but for the errors of the step, and the pivots that vanish in
-/// the plane must count as zero there too.
+/// A pivot below this ratio to the greatest one counts as zero. Within a step the contacts of an
+/// overdetermined support lie in a plane only up to the error of the step; the pivots that would vanish
+/// exactly in the plane must count as zero, too.
 const SINGULAR: f64 = 1e-7;
 
-/// The least x with A x = b as nearly as possible.
+/// The least-norm solution x of min |A x - b|.
 pub(crate) fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
     if matrix.is_square() { solve(matrix, right).0 } else { least(matrix, right).0 }
 }
 
-/// The least x with A x = b as nearly as possible, and whether it is the only one.
+/// The least-norm solution x of min |A x - b|, and whether the minimiser is unique.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     let n = right.len();
     if n == 0 {
@@ -374,9 +374,9 @@ pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64
     (x + more, unique)
 }
 
-/// The least x that solves the equations of a singular matrix as far as its rank goes: A P = Q R with pivots,
-/// and the least solution of R' x = Q' b where R' are the rows of R up to the rank. (A singular value
-/// decomposition by shifts may lose half the digits next to a zero.)
+/// The least-norm solution of a singular system up to its rank: A P = Q R with pivots, and the least-norm
+/// solution of R' x = Q' b, where R' are the rows of R up to the rank. (A singular value decomposition by
+/// shifts may lose half the digits next to a zero.)
 fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     let n = matrix.ncols();
     let qr = matrix.clone().col_piv_qr();
@@ -388,8 +388,8 @@ fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     }
     let rows = r.rows(0, rank).into_owned();
     let projected = (qr.q().transpose() * right).rows(0, rank).into_owned();
-    // The least solution of rows x = projected lies in the span of the rows: rows^T = Q2 R2, x = Q2 R2^-T
-    // projected.
+    // The least-norm solution of rows x = projected lies in the span of the rows: rows^T = Q2 R2, x = Q2
+    // R2^-T projected.
     let second = rows.transpose().qr();
     let mut x = match second.r().transpose().solve_lower_triangular(&projected) {
         Some(inner) => second.q() * inner,
@@ -403,7 +403,7 @@ fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
 mod tests {
     use super::*;
 
-    /// Four corners that slide: the matrix has rank three, and the equations are consistent.
+    /// Four sliding corners: the matrix has rank three, and the equations are consistent.
     #[test]
     fn singular_systems_are_solved_to_rounding() {
         for k in 0..200 {
@@ -420,7 +420,7 @@ mod tests {
             let (x, unique) = solve(&matrix, &right);
             assert!(!unique);
             assert!((&matrix * &x - right).amax() < 1e-13, "{k}");
-            // The least: no part of it lies in the null space.
+            // The least-norm solution has no component in the null space.
             let svd = matrix.clone().transpose() * &matrix;
             let null = svd.symmetric_eigen();
             let (least, _) = null.eigenvalues.argmin();

@@ -1,4 +1,4 @@
-//! Takes the end of a step as the new front, and projects states onto the constraints.
+//! Accepts the end of a step as the new front, and projects states onto the constraints.
 
 use hodograph::ComponentKind;
 
@@ -10,11 +10,11 @@ use crate::stepper::{self, Step};
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
-/// Speeds below this part of the greatest so far are zero.
+/// Speeds below this part of the greatest speed so far are set to zero.
 const NOTHING: f64 = 1e-100;
 
 impl Transition<'_> {
-    /// Takes the end of a step as the new front.
+    /// Accepts the end of a step as the new front.
     pub(crate) fn commit(&mut self, step: &mut Step) -> Result<(), SimulationError> {
         let modes = self.modes();
         self.front.t = step.t + step.h;
@@ -49,7 +49,7 @@ impl Transition<'_> {
     /// Corrects the drift of a state that was integrated in these modes.
     fn project_onto_constraints(&self, modes: &Modes, t: f64, y: &mut [f64]) -> Result<(), SimulationError> {
         if modes.resting {
-            // Not even the last bit of a quaternion's length changes.
+            // Not even the last bit of the norm of a quaternion changes.
             return Ok(());
         }
         let n = self.mechanism.count(ComponentKind::Coordinate);
@@ -64,7 +64,8 @@ impl Transition<'_> {
             let least = SIZE * self.front.scales.length;
             let (left, known) =
                 drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts, least)?;
-            // Velocities come last, in the place that was corrected: what is left of them counts as an approach.
+            // Velocities are projected last, at the corrected positions, since a remaining normal velocity
+            // would count as an approach.
             drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, (&closed, known))?;
             Ok(left)
         })();
@@ -72,7 +73,7 @@ impl Transition<'_> {
             return Err(self.error(Some(left.contact), ErrorKind::Drift(left.gap)));
         }
         for (speed, scale) in u.iter_mut().zip(&self.front.scale) {
-            // Repeated corrections of a speed that is zero leave numbers so small that their squares underflow.
+            // Repeated corrections of a zero speed leave numbers so small that their squares underflow.
             if speed.abs() < NOTHING * scale {
                 *speed = 0.0;
             }
@@ -82,8 +83,8 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// The state at a time in a step that was made in these modes, integrated anew up to it: as exact as the
-    /// step itself.
+    /// The state at a time within a step that was made in these modes. It is integrated again up to that
+    /// time, so that it is as accurate as the step itself.
     pub(crate) fn within_step(&self, step: &Step, modes: &Modes, time: f64) -> Option<Vec<f64>> {
         if modes.resting {
             return Some(step.end.clone());
@@ -104,18 +105,18 @@ impl Transition<'_> {
         Some(y)
     }
 
-    /// A part of the step from the front, integrated anew.
+    /// A part of the step from the front, integrated again.
     pub(crate) fn part(&self, closed: &[Closed], h: f64) -> Option<Step> {
         part_of(&self.motion(closed), (self.front.t, &self.front.y, None), h)
     }
 
-    /// A part of a step from the front in the same modes, integrated anew.
+    /// A part of a step from the front in the same modes, integrated again.
     pub(crate) fn part_again(&self, closed: &[Closed], whole: &Step, h: f64) -> Option<Step> {
         part_of(&self.motion(closed), (whole.t, whole.start(), whole.first()), h)
     }
 }
 
-/// The motion from a state on, over exactly so long.
+/// The motion from a state over exactly the time `h`.
 fn part_of(motion: &Motion<'_>, from: (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
     let mut room = motion.room();
     let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {

@@ -1,8 +1,8 @@
-//! What the surfaces of a contact do beyond one coefficient of friction and one of restitution.
+//! Laws of contact beyond a constant coefficient of friction and a constant coefficient of restitution.
 //!
-//! [`ContactLaw`] is data for the laws that measurements ask for most, and takes functions for the rest. What it
-//! leaves open is that of the [`hodograph::Surface`]: a static coefficient equal to the sliding one, the same friction in
-//! impacts, a constant e.
+//! [`ContactLaw`] offers the most common measured laws as data, and functions for others. Parts that are not
+//! set are those of the [`hodograph::Surface`]: a static coefficient equal to the sliding one, the same
+//! friction in impacts, a constant e.
 //!
 //! Theory: docs/theory.md, sections 17.15 and 17.17.
 
@@ -15,7 +15,7 @@ use hodograph::StatedLaw;
 /// A function of a speed, m/s.
 pub type SpeedFunction = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
-/// What a contact does beyond mu, e and law of its [`hodograph::Surface`].
+/// The laws of a contact beyond mu, e and law of its [`hodograph::Surface`].
 ///
 /// ```
 /// use hodograph::{Law, Surface};
@@ -55,7 +55,7 @@ impl ContactLaw {
     ///
     /// # Errors
     ///
-    /// A sentence, where there is no law of a name with so many numbers.
+    /// A sentence, if there is no law with this name and number of arguments.
     pub fn stated(law: &StatedLaw<'_>) -> Result<Self, String> {
         let none = |what: &str, name: &str, forms: &str| {
             format!("there is no law of {what} `{name}` with such numbers: give {forms}")
@@ -89,14 +89,14 @@ pub enum Sliding {
     /// mu of the surface
     #[default]
     Constant,
-    /// mu + (mu_static - mu) exp(-s / speed), after Stribeck: friction falls from the static coefficient without a
-    /// jump. `speed` is positive, and `mu_static` is needed.
+    /// mu + (mu_static - mu) exp(-s / speed), after Stribeck: friction decreases continuously from the static
+    /// coefficient. `speed` is positive, and `mu_static` is required.
     Stribeck {
         /// m/s
         speed: f64,
     },
-    /// A smooth function of s, not negative; its value at s = 0 is not above `mu_static`, which is that value
-    /// where it is not given.
+    /// A smooth function of s, not negative. Its value at s = 0 must not exceed `mu_static`, and is the
+    /// default of `mu_static`.
     Function(SpeedFunction),
 }
 
@@ -128,15 +128,16 @@ pub enum Restitution {
         /// positive
         exponent: f64,
     },
-    /// Pairs of speed (m/s, rising) and e, joined by straight lines, constant beyond the ends; e of the surface is
-    /// not read.
+    /// Pairs of speed (m/s, increasing) and e, interpolated linearly and constant outside; e of the surface
+    /// is not used.
     Table(Vec<[f64; 2]>),
-    /// A function of v with values in [0, 1]; e of the surface is not read.
+    /// A function of v with values in [0, 1]; e of the surface is not used.
     Function(SpeedFunction),
 }
 
 impl Restitution {
-    /// e at a speed of approach, where `e` is that of the surface. Functions may answer any number.
+    /// e at a speed of approach; `e` is that of the surface. Functions may return any number, which is not
+    /// checked here.
     pub fn at(&self, e: f64, approach: f64) -> f64 {
         let v = approach.max(0.0);
         match self {
@@ -157,7 +158,7 @@ impl Restitution {
     }
 }
 
-/// On the straight lines between pairs, whose first numbers rise.
+/// Linear interpolation between pairs with increasing first numbers.
 fn interpolated(rows: &[[f64; 2]], v: f64) -> f64 {
     let place = rows.partition_point(|row| row[0] <= v);
     match (place.checked_sub(1).map(|before| rows[before]), rows.get(place)) {
@@ -180,7 +181,7 @@ impl fmt::Debug for Sliding {
     }
 }
 
-/// As [`Restitution::from_str`] reads it: `power(1, 0.25)`.
+/// In the notation that [`Restitution::from_str`] reads: `power(1, 0.25)`.
 impl fmt::Display for Restitution {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -197,7 +198,7 @@ impl fmt::Display for Restitution {
     }
 }
 
-/// As [`Sliding::from_str`] reads it: `stribeck(0.01)`.
+/// In the notation that [`Sliding::from_str`] reads: `stribeck(0.01)`.
 impl fmt::Display for Sliding {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -208,7 +209,7 @@ impl fmt::Display for Sliding {
     }
 }
 
-/// Functions are equal if they are the same one.
+/// Two functions are equal if they are the same object.
 impl PartialEq for Restitution {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
@@ -229,7 +230,7 @@ impl PartialEq for Sliding {
     }
 }
 
-/// A name and its numbers: `power(1, 0.25)`, or `constant`.
+/// Splits a name and its numbers: `power(1, 0.25)`, or `constant`.
 fn call(text: &str) -> Option<(&str, Vec<f64>)> {
     let text = text.trim();
     let Some((name, rest)) = text.split_once('(') else { return Some((text, Vec::new())) };
@@ -238,7 +239,7 @@ fn call(text: &str) -> Option<(&str, Vec<f64>)> {
 }
 
 impl Restitution {
-    /// The law of this name with these numbers; `None` where there is no such law with so many.
+    /// The law with this name and these numbers; `None` if there is none.
     pub fn named(name: &str, numbers: &[f64]) -> Option<Self> {
         Some(match (name, numbers) {
             ("constant", []) => Self::Constant,
@@ -252,7 +253,7 @@ impl Restitution {
         })
     }
 
-    /// The forms in which a law is written.
+    /// The syntax of the laws.
     pub const FORMS: &'static str = "constant, threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT) or table(SPEED, E, SPEED, E, ..)";
 }
 
@@ -260,7 +261,7 @@ impl FromStr for Restitution {
     type Err = String;
 
     /// Reads `constant`, `threshold(SPEED)`, `power(SPEED, EXPONENT)`, `loss(SPEED, EXPONENT)` and
-    /// `table(SPEED, E, SPEED, E, ..)`. Whether the numbers are possible is checked by the simulation.
+    /// `table(SPEED, E, SPEED, E, ..)`. The simulation checks the numbers.
     fn from_str(text: &str) -> Result<Self, String> {
         call(text)
             .and_then(|(name, numbers)| Self::named(name, &numbers))
@@ -269,7 +270,7 @@ impl FromStr for Restitution {
 }
 
 impl Sliding {
-    /// The law of this name with these numbers; `None` where there is no such law with so many.
+    /// The law with this name and these numbers; `None` if there is none.
     pub fn named(name: &str, numbers: &[f64]) -> Option<Self> {
         Some(match (name, numbers) {
             ("constant", []) => Self::Constant,
@@ -278,7 +279,7 @@ impl Sliding {
         })
     }
 
-    /// The forms in which a law is written.
+    /// The syntax of the laws.
     pub const FORMS: &'static str = "constant or stribeck(SPEED)";
 }
 

@@ -1,17 +1,17 @@
-//! Corrects the drift of the integration after each step: lengths of quaternions, closed loops, gaps and
+//! Corrects the drift of the integration after each step: norms of quaternions, closed loops, gaps and
 //! velocities of closed contacts.
 
-use hodograph::{ComponentKind, Contacts, State, StateError};
+use hodograph::{ComponentKind, Contacts, Distance, State, StateError};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::{ClosedContacts, least_squares};
 use crate::torques::WithTorques;
 
-/// Steps of Newton's method at most.
+/// Largest number of Newton steps.
 const STEPS: usize = 4;
 
-/// Brings quaternions to length one and takes a few of Newton's steps towards closed loops, from dependent coordinates that
-/// are nearly right. Answers the last change of a coordinate, relative to the greatest coordinate or 1.
+/// Normalises quaternions and takes a few Newton steps to close loops, starting from dependent coordinates
+/// that are nearly right. Returns the last change of a coordinate, relative to the greatest coordinate or 1.
 ///
 /// # Errors
 ///
@@ -48,18 +48,18 @@ pub fn close_loops(
     Ok(last)
 }
 
-/// A gap that was not closed: the contact, and the gap that is left, m.
+/// A gap that could not be closed: the contact, and the remaining gap, m.
 pub(crate) struct Left {
     pub contact: usize,
     pub gap: f64,
 }
 
-/// A gap counts as closed where the correction leaves no more than this part of the coordinates' size.
+/// A gap counts as closed if the remaining correction is at most this part of the size of the coordinates.
 const CLOSED: f64 = 1e-10;
 
-/// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the
-/// mass matrix; the first gap that it does not close, if there is one, and what it knows of the contacts. `least`
-/// is a length that is small in the problem: 1e-13 of it is rounding.
+/// Moves the coordinates so that the gaps of these contacts vanish, by the least motion in the metric of the
+/// mass matrix. Returns the first gap that it does not close, if any, and the evaluated contacts. `least` is
+/// a small length of the problem: 1e-13 of it counts as rounding.
 pub(crate) fn close_gaps(
     mechanism: WithTorques<'_>,
     time: f64,
@@ -73,14 +73,19 @@ pub(crate) fn close_gaps(
     let size = coordinates.iter().fold(least, |size, q| size.max(q.abs()));
     let mut before = f64::INFINITY;
     let mut known = None;
+    // torques have no gap
+    let own: Vec<usize> =
+        contacts.iter().copied().filter(|&contact| mechanism.torque(contact).is_none()).collect();
+    let mut distances = vec![Distance::default(); own.len()];
     for _ in 0..STEPS {
         let state = State { time, coordinates: &*coordinates, speeds, inputs };
         let mut open = Vec::new();
         let mut gaps = Vec::new();
-        for &contact in contacts {
-            // beyond its end a gap is not what the normal closes
-            let ended = mechanism.validity(contact, &state)?.is_some_and(|validity| validity < 0.0);
-            if let Some(gap) = mechanism.gap(contact, &state)?.filter(|_| !ended) {
+        mechanism.gaps(&own, &state, &mut distances)?;
+        for (&contact, Distance { gap, validity }) in own.iter().zip(&distances) {
+            // beyond the end of a face the gap is not closed along the normal
+            let ended = validity.is_some_and(|validity| validity < 0.0);
+            if let Some(gap) = gap.filter(|_| !ended) {
                 open.push(contact);
                 gaps.push(gap);
             }
@@ -90,12 +95,12 @@ pub(crate) fn close_gaps(
             return Ok((None, known));
         }
         if largest > CLOSED * size && largest > 0.5 * before {
-            // Newton's method closes a gap whose rate is the normal velocity quadratically.
+            // Newton's method converges quadratically for a gap whose rate is the normal velocity.
             let worst = gaps.iter().position(|gap| gap.abs() == largest).unwrap_or(0);
             return Ok((Some(Left { contact: open[worst], gap: gaps[worst] }), known));
         }
         before = largest;
-        // the change is small: directions of the first step serve the others
+        // the change is small, so the directions of the first step can be reused
         let support: &ClosedContacts = match &mut known {
             Some(known) => known,
             none => none.insert(ClosedContacts::new(mechanism, &state, &open, false)?),
@@ -122,8 +127,8 @@ pub(crate) fn close_gaps(
     Ok((None, known))
 }
 
-/// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least
-/// change of kinetic energy, with what is `known` of the contacts close by.
+/// Changes the speeds with the least change of kinetic energy so that closed contacts do not separate, and
+/// those that stick do not slip; `known` are contacts evaluated nearby.
 pub(crate) fn hold_velocities(
     mechanism: WithTorques<'_>,
     time: f64,
@@ -142,7 +147,7 @@ pub(crate) fn hold_velocities(
         .flat_map(|(i, (_, sticks))| (0..if *sticks { 3 } else { 1 }).map(move |axis| 3 * i + axis))
         .collect();
     let state = State { time, coordinates, speeds: &*speeds, inputs };
-    // The velocities are those of this place; the directions of a place close by correct them as well.
+    // The velocities are those of this state; the directions may be those of a nearby state.
     let (support, mut velocity) = match known.filter(|known| known.contacts == contacts) {
         Some(known) => {
             let mut velocity = DVector::zeros(3 * contacts.len());
@@ -157,7 +162,7 @@ pub(crate) fn hold_velocities(
             (support, velocity)
         }
     };
-    // Velocities are affine in the speeds: the second time corrects rounding.
+    // Velocities are affine in the speeds; the second pass corrects rounding.
     for _ in 0..2 {
         let change = support.without(&rows, &velocity);
         speeds.iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);

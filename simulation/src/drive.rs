@@ -6,12 +6,12 @@ use std::sync::Arc;
 /// A function that writes the inputs for a time, coordinates and speeds.
 pub type InputFunction = Arc<dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync>;
 
-/// A controller: computes inputs at its sampling times, and may keep a state. Every cloneable closure with
-/// this signature is one.
+/// A controller: it computes inputs at its sampling times, and may have a state. Every cloneable closure with
+/// this signature is a controller.
 pub trait Controller: Send {
-    /// Writes the inputs for a time, coordinates and speeds; the slice holds the inputs so far.
+    /// Writes the inputs for a time, coordinates and speeds; the slice contains the previous inputs.
     fn control(&mut self, time: f64, coordinates: &[f64], speeds: &[f64], inputs: &mut [f64]);
-    /// A copy with its memory.
+    /// A copy with the controller's state.
     fn boxed_clone(&self) -> Box<dyn Controller>;
 }
 
@@ -28,15 +28,15 @@ where
     }
 }
 
-/// Where the inputs of a mechanism come from.
+/// The source of the inputs of a mechanism.
 #[derive(Default)]
 pub enum Drive {
-    /// They keep their values of the start state.
+    /// Constant: the values of the start state.
     #[default]
     Held,
-    /// They are a smooth function of time and state, evaluated within steps.
+    /// A smooth function of time and state, evaluated within steps.
     Continuous(InputFunction),
-    /// They are computed every `period` seconds, from the start on, and held in between.
+    /// A sampled controller: computed every `period` seconds from the start on, and constant in between.
     Sampled {
         /// sampling time, s
         period: f64,

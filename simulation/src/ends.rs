@@ -1,9 +1,10 @@
-//! Contacts of faces and edges that end: where they begin and end without an impact (docs/theory.md, section 17.18).
+//! Contacts of bounded faces and edges: where they begin and end without an impact (docs/theory.md, section
+//! 17.18).
 //!
-//! Such a contact has a validity, which says how far its place is from the ends. While it is closed the validity is
-//! watched like a gap; where it falls below zero, the contact ends. One that is open may come to its face from the
-//! side, along a surface that it slides on: then it begins as it is, without an impact. For this its gap is watched
-//! at a small height first, and its validity below that height.
+//! Such a contact has a validity: the distance of the contact point from the boundary. While the contact is
+//! closed, its validity is monitored like a gap; where it falls below zero, the contact ends. An open contact
+//! may come to its face from the side, along a surface on which it slides; then it begins without an impact.
+//! To detect this, its gap is first monitored at a small height, and below that height its validity.
 
 use hodograph::{State, StateError};
 use nalgebra::Vector3;
@@ -14,23 +15,23 @@ use crate::phase::{Leaving, Phase};
 use crate::transition::Transition;
 use crate::{EventKind, SimulationError};
 
-/// A contact is near where its gap is below this part of the length of the problem.
+/// A contact is near its face if its gap is below this part of the length of the problem.
 const NEAR: f64 = 5e-11;
-/// A normal velocity below this part of its terms is none.
+/// A normal velocity below this part of its terms counts as zero.
 const STILL: f64 = 1e-10;
 
 impl Transition<'_> {
-    /// Whether the faces or edges that touch at a contact end.
+    /// Whether the faces or edges of a contact are bounded.
     pub(crate) fn ends(&self, contact: usize) -> bool {
         self.pair(contact).is_some_and(|pair| pair.ends)
     }
 
-    /// The height below which a contact is near, m.
+    /// The height below which a contact is near its face, m.
     pub(crate) fn low(&self) -> f64 {
         NEAR * self.front.scales.length
     }
 
-    /// How far a contact is from where it ends, m.
+    /// The distance of the contact point from the boundary, m.
     pub(crate) fn validity(&self, contact: usize, state: &State<'_>) -> Result<f64, StateError> {
         if !self.ends(contact) {
             return Ok(f64::INFINITY);
@@ -38,13 +39,13 @@ impl Transition<'_> {
         Ok(self.mechanism.validity(contact, state)?.unwrap_or(f64::INFINITY))
     }
 
-    /// Whether gap and normal of a contact belong together in a state.
+    /// Whether gap and normal of a contact are valid in a state.
     pub(crate) fn is_valid(&self, contact: usize, state: &State<'_>) -> Result<bool, SimulationError> {
         let validity = self.validity(contact, state);
         validity.map(|validity| validity >= 0.0).map_err(|error| self.failure(Failure::State(error)))
     }
 
-    /// The height at which the gap of an open contact is watched, m.
+    /// The height at which the gap of an open contact is monitored, m.
     pub(crate) fn watched_from(&self, contact: usize) -> f64 {
         match self.front.phases[contact] {
             Phase::Open(Leaving::Apart) if self.ends(contact) => self.low(),
@@ -52,22 +53,51 @@ impl Transition<'_> {
         }
     }
 
-    /// Whether a contact that is near is beside its face, so that it may come from the side.
+    /// Whether a contact that is near its face lies beside it, so that it may come from the side.
     pub(crate) fn is_beside(&self, contact: usize) -> bool {
         self.front.phases[contact] == Phase::Open(Leaving::Near)
             && self.validity(contact, &self.here()).is_ok_and(|validity| validity < 0.5 * self.low())
     }
 
-    /// A contact has come to its face from the side: it begins if it keeps its height.
+    /// Handles a contact that has come to its face from the side: it begins if its normal velocity is zero.
     pub(crate) fn enter(&mut self, contact: usize) -> Result<(), SimulationError> {
         let gap = self.mechanism.gap(contact, &self.here()).map_err(|e| self.failure(Failure::State(e)))?;
         if gap.is_some_and(|gap| gap <= self.low()) && self.keeps_height(contact)? {
-            return self.stay(contact);
+            let was = self.front.phases.clone();
+            let closed = |other: usize| other == contact || was[other].is_closed();
+            let mut candidates: Vec<usize> = (0..was.len()).filter(|&other| closed(other)).collect();
+            candidates.extend(self.arrived(contact)?);
+            candidates.sort_unstable();
+            return self.decide(&candidates, &was);
         }
         Ok(())
     }
 
-    /// Whether a contact has no normal velocity but rounding.
+    /// The open contacts, but for this one, that have come to their faces from the side just as it has: they are within
+    /// them, without a gap and a normal velocity. What comes together begins together, for each alone might not
+    /// carry what they carry together.
+    fn arrived(&self, but: usize) -> Result<Vec<usize>, SimulationError> {
+        let here = self.here();
+        let mut arrived = Vec::new();
+        for contact in (0..self.front.phases.len()).filter(|&contact| contact != but) {
+            let open = matches!(self.front.phases[contact], Phase::Open(Leaving::Near | Leaving::Apart));
+            if !open || !self.ends(contact) || self.surfaces[contact].is_none() {
+                continue;
+            }
+            let failed = |error| self.failure(Failure::State(error));
+            let validity = self.validity(contact, &here).map_err(failed)?;
+            if validity < 0.5 * self.low() {
+                continue;
+            }
+            let gap = self.mechanism.gap(contact, &here).map_err(failed)?;
+            if gap.is_some_and(|gap| gap <= self.low()) && self.keeps_height(contact)? {
+                arrived.push(contact);
+            }
+        }
+        Ok(arrived)
+    }
+
+    /// Whether the normal velocity of a contact is zero up to rounding.
     pub(crate) fn keeps_height(&self, contact: usize) -> Result<bool, SimulationError> {
         let here = self.here();
         let support = ClosedContacts::new(self.mechanism, &here, &[contact], false)
@@ -76,7 +106,7 @@ impl Transition<'_> {
         Ok(support.velocity[0].abs() <= STILL * size)
     }
 
-    /// A closed contact has come to the end of its face: it ends, and the others carry on.
+    /// Handles a closed contact at the boundary of its face: it ends, and the others take over.
     pub(crate) fn leave(&mut self, contact: usize) -> Result<(), SimulationError> {
         self.front.phases[contact] = Phase::Open(Leaving::Near);
         self.front.forces[contact] = Vector3::zeros();
@@ -89,7 +119,9 @@ impl Transition<'_> {
         let selection = hodograph::Selection::Unique;
         self.push(Some(contact), EventKind::LiftOff { selection });
         let was = self.front.phases.clone();
-        let closed: Vec<usize> = (0..was.len()).filter(|&other| was[other].is_closed()).collect();
+        let mut closed: Vec<usize> = (0..was.len()).filter(|&other| was[other].is_closed()).collect();
+        closed.extend(self.arrived(contact)?);
+        closed.sort_unstable();
         self.decide(&closed, &was)
     }
 }

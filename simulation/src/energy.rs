@@ -2,16 +2,16 @@
 //! inputs.
 
 /// The energies at one time and the works since the start, J. The sum of kinetic and potential energy changes
-/// by the sum of the works, and by the works of prescribed motion and of loads without potential.
+/// by the sum of the works, plus the works of prescribed motion and of loads without potential.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EnergyAccount {
     /// kinetic energy
     pub kinetic: f64,
-    /// potential energy of gravity and springs; `None` where the model has neither, or where it is not a
-    /// function of the coordinates
+    /// potential energy of gravity and springs; `None` if the model has neither, or if it is not a function
+    /// of the coordinates
     pub potential: Option<f64>,
-    /// work of friction in contact that lasts, that of its torques among it, not positive
+    /// work of friction in lasting contact, including its torques; not positive
     pub friction: f64,
     /// change of kinetic energy in impacts
     pub impacts: f64,
@@ -20,8 +20,8 @@ pub struct EnergyAccount {
 }
 
 impl EnergyAccount {
-    /// Kinetic and potential energy; `None` where there is no potential energy: it is not zero where it is
-    /// not defined.
+    /// Kinetic plus potential energy; `None` if there is no potential energy, which is then undefined, not
+    /// zero.
     pub fn total(&self) -> Option<f64> {
         self.potential.map(|potential| self.kinetic + potential)
     }

@@ -2,22 +2,25 @@
 
 use std::fmt;
 
-use hodograph::{CollisionError, ComponentKind, ContactError, Contacts, StateError};
+use hodograph::{
+    Cause, CollisionError, ComponentKind, ContactError, Contacts, ImpactError, ParameterError, StateError,
+    UnknownLaw,
+};
 
-/// Why a simulation cannot continue, with time and contact.
+/// Why a simulation cannot continue, with the time and the contact.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SimulationError {
-    /// when, s
+    /// time, s
     pub time: f64,
-    /// name of the contact, if it is about one
+    /// name of the contact, if the error concerns one
     pub contact: Option<String>,
-    /// what is wrong
+    /// the reason
     pub kind: ErrorKind,
 }
 
 impl SimulationError {
-    /// At a time, and at a contact by its number.
+    /// An error at a time, and at a contact with this index.
     pub(crate) fn new(
         mechanism: &dyn Contacts<f64>,
         time: f64,
@@ -29,72 +32,81 @@ impl SimulationError {
     }
 }
 
-/// What is wrong.
+/// The reason of an error.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// The mechanism has no equations of motion there.
+    /// The mechanism has no equations of motion in this state.
     State(StateError),
     /// A collision has no outcome.
     Collision(CollisionError<f64>),
-    /// A contact that lasts has no force.
+    /// A lasting contact has no force.
     Contact(ContactError<f64>),
-    /// A contact begins with a negative gap, m.
+    /// A contact starts with a negative gap, m.
     Overlap(f64),
     /// An option or a surface is impossible.
     BadOption(String),
-    /// A controller or a function of inputs gave a number that is not finite, or has the wrong length.
+    /// A surface or a number of the start state is impossible, or not given.
+    Argument {
+        /// why
+        cause: Cause,
+        /// the same in words, with the number at fault
+        message: String,
+    },
+    /// A controller or a function of inputs returned a number that is not finite, or the wrong number of
+    /// inputs.
     BadInput(String),
     /// The integrator's steps became too small.
     Stalled,
-    /// So many events followed each other without progress in time.
+    /// Too many events followed each other without progress in time.
     EventsWithoutEnd {
-        /// how many
+        /// number of events
         count: usize,
         /// the closed contacts, and whether they stick or slide
         modes: String,
     },
-    /// So many steps followed each other without an event and with hardly any progress in time.
+    /// Too many steps followed each other without an event and with hardly any progress in time.
     NoProgress {
-        /// how many
+        /// number of steps
         steps: usize,
-        /// over how long, s
+        /// their total duration, s
         time: f64,
         /// the closed contacts, and whether they stick or slide
         modes: String,
     },
-    /// The motion ended before the time asked for, with the event [`crate::EventKind::Singular`].
+    /// The motion ended earlier, with the event [`crate::EventKind::Singular`].
     Singular,
-    /// The gap of a closed contact is not zero, m: its rate is not the normal velocity of the contact.
+    /// The gap of a closed contact is not zero, m: the rate of the gap is not the normal velocity of the
+    /// contact.
     Drift(f64),
-    /// A normal velocity cannot be told from the rounding of what it is made of: no one knows whether the
-    /// contact closes or opens.
+    /// A normal velocity is smaller than its rounding error, so that it is not known whether the contact
+    /// closes or opens.
     Rounding {
         /// the normal velocity, m/s
         velocity: f64,
-        /// the sum of the sizes of its terms, m/s
+        /// the sum of the magnitudes of its terms, m/s
         terms: f64,
     },
-    /// A gap cannot be told from the rounding of what it is made of, m.
+    /// A gap is smaller than its rounding error, m.
     GapRounding {
         /// the gap, m
         gap: f64,
-        /// what rounding may be, m
+        /// the bound of its rounding error, m
         rounding: f64,
     },
-    /// Several contacts were struck together and the option says to stop.
+    /// Several contacts are struck at the same time, and the options ask for an error then.
     StruckTogether(Vec<String>),
-    /// Several contacts were struck together, and the impact is not one that can be solved as the option
-    /// says: why, and what to do.
+    /// Several contacts are struck at the same time, and the impact cannot be solved by the method of the
+    /// options; with the reason and a remedy.
     LzbNotCovered(String),
     /// The forces at several contacts could not be found.
     NoForces(String),
 }
 
 impl ErrorKind {
-    /// A stable lower-case name.
+    /// The name of the error: lower case, and stable between versions.
     pub fn name(&self) -> &'static str {
         match self {
             Self::State(error) => error.kind(),
@@ -102,6 +114,7 @@ impl ErrorKind {
             Self::Contact(error) => error.kind(),
             Self::Overlap(_) => "overlap",
             Self::BadOption(_) => "bad_option",
+            Self::Argument { cause, .. } => cause.name(),
             Self::BadInput(_) => "bad_input",
             Self::Stalled => "stalled",
             Self::EventsWithoutEnd { .. } => "events_without_end",
@@ -115,6 +128,19 @@ impl ErrorKind {
         }
     }
 }
+
+/// A refused argument with the cause and the words of its error.
+macro_rules! argument {
+    ($($error:ty),*) => {
+        $(impl From<$error> for ErrorKind {
+            fn from(error: $error) -> Self {
+                Self::Argument { cause: error.cause(), message: error.to_string() }
+            }
+        })*
+    };
+}
+
+argument!(ImpactError<f64>, ParameterError, UnknownLaw<'_>);
 
 impl fmt::Display for SimulationError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -131,6 +157,7 @@ impl fmt::Display for SimulationError {
                 write!(out, "the negative gap {gap}: start where the bodies are apart, or touch")
             }
             ErrorKind::BadOption(message)
+            | ErrorKind::Argument { message, .. }
             | ErrorKind::BadInput(message)
             | ErrorKind::NoForces(message)
             | ErrorKind::LzbNotCovered(message) => out.write_str(message),

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Event {
-    /// s
+    /// time, s
     pub time: f64,
-    /// number of the contact, if it happened at one
+    /// index of the contact, if the event concerns one
     pub contact: Option<usize>,
-    /// what happened
+    /// the kind of event
     pub kind: EventKind,
     /// coordinates at that time
     pub coordinates: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct Event {
     pub speeds: Vec<f64>,
 }
 
-/// What happened.
+/// The kinds of events.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -27,89 +27,106 @@ pub struct Event {
 pub enum EventKind {
     /// Bodies collided.
     Collision(Box<CollisionRecord>),
-    /// Several contacts struck at once: see [`crate::ImpactsAtOnce`].
+    /// Several contacts were struck at once: see [`crate::ImpactsAtOnce`].
     SimultaneousCollision(Box<SimultaneousCollision>),
-    /// A sliding contact that no finite force can hold suffered an impact with zero speed of approach.
+    /// A sliding contact that no finite force can hold suffered an impact without collision (zero speed of
+    /// approach).
     ImpactWithoutCollision(Box<CollisionRecord>),
     /// Lasting contact begins.
     Contact {
-        /// how they touch
+        /// the mode of the contact
         mode: ContactMode,
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
     /// The bodies separate without a collision.
     LiftOff {
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
-    /// A contact that stuck begins to slip, or slips in another direction after a stop.
+    /// A sticking contact begins to slip, or slips in another direction after a stop.
     Slip {
         /// direction along the two tangential axes of the contact basis
         direction: [f64; 2],
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
     /// Slip ended and friction holds the contact.
     Stick {
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
-    /// Bodies that rolling friction held begin to roll on each other.
+    /// Bodies that rolling friction held begin to roll relative to each other.
     Roll {
         /// direction of the relative angular velocity along the two tangential axes of the contact basis
         direction: [f64; 2],
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
     /// Rolling ended and rolling friction holds the bodies.
     RollEnds {
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
-    /// Bodies that spinning friction held begin to turn about the normal.
+    /// Bodies that spinning friction held begin to rotate about the normal.
     Spin {
-        /// whether what strikes turns right-handed about the normal
+        /// whether the striking body rotates right-handed about the normal
         positive: bool,
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
-    /// Turning about the normal ended and spinning friction holds the bodies.
+    /// Rotation about the normal ended, and spinning friction holds the bodies.
     SpinEnds {
-        /// whether this was the only possibility
+        /// whether other modes were possible
         selection: Selection,
     },
-    /// Nothing moves any more.
+    /// Everything is at rest.
     Rest,
-    /// The motion ends: the coordinates no longer determine the point at which the bodies touch (a disc that
-    /// lies flat). What would follow is the impact of a whole face.
+    /// The motion ends: the coordinates no longer determine the contact point (a disc that lies flat). The
+    /// impact of a whole face would follow.
     Singular,
-    /// The user's function of this number is zero.
+    /// The user's function with this index is zero.
     Zero(usize),
 }
 
-impl EventKind {
-    /// A stable lower-case name.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Collision(_) => "collision",
-            Self::SimultaneousCollision(_) => "struck_together",
-            Self::ImpactWithoutCollision(_) => "impact_without_collision",
-            Self::Contact { .. } => "contact",
-            Self::LiftOff { .. } => "lift_off",
-            Self::Slip { .. } => "slip",
-            Self::Stick { .. } => "stick",
-            Self::Roll { .. } => "roll",
-            Self::RollEnds { .. } => "roll_ends",
-            Self::Spin { .. } => "spin",
-            Self::SpinEnds { .. } => "spin_ends",
-            Self::Rest => "rest",
-            Self::Singular => "singular",
-            Self::Zero(_) => "zero",
-        }
-    }
+/// Names the kinds of events, once for [`EventKind::NAMES`] and [`EventKind::name`]. A kind without a row does not
+/// compile.
+macro_rules! names {
+    ($($kind:pat => $name:literal,)*) => {
+        impl EventKind {
+            /// The names of all kinds but [`EventKind::Zero`], in a stable order: languages without such enums
+            /// number them by it.
+            pub const NAMES: &'static [&'static str] = &[$($name),*];
 
-    /// Whether other modes were possible, of events that choose modes.
+            /// The name of the event: lower case, and stable between versions.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $($kind => $name,)*
+                    Self::Zero(_) => "zero",
+                }
+            }
+        }
+    };
+}
+
+names! {
+    Self::Collision(_) => "collision",
+    Self::SimultaneousCollision(_) => "struck_together",
+    Self::ImpactWithoutCollision(_) => "impact_without_collision",
+    Self::Contact { .. } => "contact",
+    Self::LiftOff { .. } => "lift_off",
+    Self::Slip { .. } => "slip",
+    Self::Stick { .. } => "stick",
+    Self::Roll { .. } => "roll",
+    Self::RollEnds { .. } => "roll_ends",
+    Self::Spin { .. } => "spin",
+    Self::SpinEnds { .. } => "spin_ends",
+    Self::Rest => "rest",
+    Self::Singular => "singular",
+}
+
+impl EventKind {
+    /// Whether other modes were possible, for events that select modes.
     pub fn selection(&self) -> Option<Selection> {
         match self {
             Self::Contact { selection, .. }
@@ -133,11 +150,11 @@ pub struct CollisionRecord {
     pub outcome: CollisionOutcome<f64>,
     /// independent speeds before
     pub speeds_before: Vec<f64>,
-    /// whether it was solved with e = 0 because the next bounce would be lower than the tolerance
+    /// whether it was solved with e = 0, because the next bounce would be lower than the tolerance
     pub last_bounce: bool,
-    /// for the first of several contacts struck together, on request ([`crate::Options::compare_orders`]): the
-    /// greatest kinetic energy of the difference between this outcome and those of the orders in which they
-    /// may strike one after the other, J; zero if the order does not matter
+    /// for the first of several contacts struck at the same time, on request
+    /// ([`crate::Options::compare_orders`]): the greatest kinetic energy of the difference between this
+    /// outcome and those of all orders of successive impacts, J; zero if the order does not matter
     pub spread: Option<f64>,
 }
 
@@ -145,21 +162,21 @@ pub struct CollisionRecord {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SimultaneousCollision {
-    /// what each contact that could take part did
+    /// the part of each contact that could take part
     pub shares: Vec<Share>,
-    /// change of kinetic energy, J: the sum of the works, but where motion is prescribed (24)
+    /// change of kinetic energy, J: the sum of the works, except if motion is prescribed (24)
     pub energy_change: f64,
     /// independent speeds before
     pub speeds_before: Vec<f64>,
-    /// as [`CollisionRecord::spread`]
+    /// like [`CollisionRecord::spread`]
     pub spread: Option<f64>,
 }
 
-/// What one contact did in an impact of several at once.
+/// The part of one contact in a simultaneous impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Share {
-    /// number of the contact
+    /// index of the contact
     pub contact: usize,
     /// normal impulse, N s
     pub impulse: f64,

@@ -1,7 +1,9 @@
-//! The functions of a step whose zeros are events: gaps, normal forces, cones of friction, functions of the
+//! The functions of a step whose zeros are events: gaps, normal forces, friction cones, and functions of the
 //! user.
 
-use hodograph::{ComponentKind, State};
+use hodograph::{ComponentKind, Distance, State, StateError};
+use nalgebra::Vector3;
+use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Hold, JAM, margins};
@@ -12,31 +14,37 @@ use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
-/// A contact that lifts off is apart where its gap is above this part of the length of the problem.
+/// A contact that lifts off counts as open if its gap is above this part of the length of the problem.
 pub(crate) const LIFTED: f64 = 5e-11;
-/// The gap of a contact that leaves, as integral of its rate, is known to this part of the length of the problem.
+/// The accuracy of the gap of a contact that lifts off, computed as the integral of its rate, relative to the
+/// length of the problem.
 const RISEN: f64 = 1e-11;
-/// Coordinates count as no smaller than this part of the length of the problem where rounding is weighed.
+/// For estimates of rounding, coordinates count as no smaller than this part of the length of the problem.
 pub(crate) const SIZE: f64 = 5e-3;
-/// A gap that closes may be rounded by this part of the length of the problem.
+/// The largest allowed rounding error of a closing gap, relative to the length of the problem.
 const HIDDEN: f64 = 1e-6;
-/// Of normal velocities that are seen, this part is none.
+/// Relative to the smallest normal velocities that matter, this part is negligible.
 const FAINT: f64 = 1e-6;
-/// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other
-/// body: it is zero but for rounding.
+/// The normal acceleration of a separating contact may be negative by this part of its terms: it is zero up
+/// to rounding.
 const STILL: f64 = 2e-11;
 
-/// Beyond this place the rounding of a gap is found from what the gap depends on, in lengths of the problem; by
-/// this relative change of each coordinate.
+/// At coordinates beyond this many lengths of the problem the rounding error of a gap is estimated from its
+/// sensitivity, with this relative change of each coordinate.
 const FAR: f64 = 5e4;
 const SHARE: f64 = 1e-6;
 
-/// Angles turn by no more than this, in all, in a piece of a step that is looked at by nine points, rad.
+/// Largest total rotation in a piece of a step that is examined at nine points, rad.
 const TURN: f64 = 4.0;
-/// A step is looked at in no more pieces than these.
+/// Largest number of pieces of a step.
 const MOST_PIECES: f64 = 500.0;
 
-/// Places and weights of Gauss's rule on [0, 1].
+/// Lists of so many contacts need no memory from the heap.
+const FEW: usize = 8;
+type Contacts = SmallVec<[usize; FEW]>;
+type Distances = SmallVec<[Distance; FEW]>;
+
+/// Nodes and weights of Gauss's rule on [0, 1].
 const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
@@ -45,20 +53,20 @@ const GAUSS: [(f64, f64); 5] = [
     (0.953_089_922_969_332, 0.118_463_442_528_094_54),
 ];
 
-/// What is watched in a step.
+/// A monitored function of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Watched {
     /// the gap of a contact
     Gap(usize),
-    /// the way of a contact that is near to where its face begins
+    /// the distance of a near contact from the boundary of its face
     Entry(usize),
-    /// how far a closed contact (its place among them) is from the end of its face
+    /// the distance of a closed contact (index among them) from the boundary of its face
     End(usize),
-    /// normal force of a contact (place among the closed ones)
+    /// normal force of a contact (index among the closed ones)
     Normal(usize),
     /// whether friction suffices
     Cone(usize),
-    /// slip of a contact along its settled direction, beside that at which a step ends
+    /// slip of a contact along its settled direction, minus the slip at which a step ends
     Slip(usize),
     /// the least f of the sliding contacts
     Jam,
@@ -67,7 +75,7 @@ pub(crate) enum Watched {
 }
 
 impl Watched {
-    /// What ends a smooth part; slip that ends does so in a part of its own.
+    /// The function that ends a smooth part; slip that ends does so in a part of its own.
     pub fn guard(self, closed: &[Closed]) -> Option<Guard> {
         Some(match self {
             Self::Gap(contact) => Guard::Gap(contact),
@@ -83,7 +91,7 @@ impl Watched {
 }
 
 impl Transition<'_> {
-    /// What must be watched over the next time `h`, and what rounding may do to it.
+    /// The functions to be monitored over the next time `h`, and bounds of their rounding errors.
     pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(ComponentKind::Coordinate);
@@ -110,7 +118,7 @@ impl Transition<'_> {
                 watched.push(Watched::End(place));
                 noise.push(self.rounding_of_gap(contact.contact));
             }
-            // A torque has the normal force of its contact.
+            // A torque shares the normal force of its contact.
             if self.mechanism.torque(contact.contact).is_none() {
                 watched.push(Watched::Normal(place));
                 noise.push(0.0);
@@ -137,7 +145,7 @@ impl Transition<'_> {
         (watched, noise)
     }
 
-    /// What rounding may do to a gap, m.
+    /// A bound of the rounding error of a gap, m.
     fn rounding_of_gap(&self, contact: usize) -> f64 {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let size =
@@ -145,7 +153,8 @@ impl Transition<'_> {
         4.0 * f64::EPSILON * self.gap_size(contact, size)
     }
 
-    /// A gap that closes must be known: the place of a collision cannot be told where rounding hides the gap.
+    /// Checks that a closing gap is known: the place of a collision cannot be determined if rounding exceeds
+    /// the gap.
     ///
     /// # Errors
     ///
@@ -159,9 +168,9 @@ impl Transition<'_> {
         Err(self.error(Some(contact), ErrorKind::GapRounding { gap, rounding }))
     }
 
-    /// The sizes of the terms that make up a gap: the greatest coordinate, or, far from the origin, the sum of
-    /// the changes of the gap that relative changes of the coordinates make. A particle that is far away along a
-    /// floor has a gap that is not rounded for that.
+    /// The size of the terms of a gap: the greatest coordinate, or, far from the origin, the sum of the
+    /// changes of the gap under relative changes of the coordinates. So the gap of a particle is not
+    /// considered inaccurate because the particle is far away along the floor.
     fn gap_size(&self, contact: usize, size: f64) -> f64 {
         if size <= FAR * self.front.scales.length {
             return size;
@@ -181,14 +190,16 @@ impl Transition<'_> {
         sum.min(size)
     }
 
-    /// What rounding may do to the mean normal velocity of a contact: 4 eps of the terms of its velocity; of that
-    /// no more than cannot be seen, or than 4 eps of the terms of the normal velocity itself.
+    /// A bound of the rounding error of the mean normal velocity of a contact: 4 eps of the terms of its
+    /// velocity, but at most the greater of [`FAINT`] of the smallest velocity that matters and 4 eps of the
+    /// terms of the normal velocity itself.
     fn rounding_of_rate(&self, contact: usize) -> f64 {
         let [all, normal] = self.rounding_of_velocity(contact);
         all.min(normal.max(FAINT * self.front.scales.slow))
     }
 
-    /// What rounding may do to the velocity of a contact, and to its normal velocity alone: 4 eps of their terms.
+    /// Bounds of the rounding errors of the velocity of a contact and of its normal velocity: 4 eps of their
+    /// terms.
     fn rounding_of_velocity(&self, contact: usize) -> [f64; 2] {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
@@ -201,7 +212,8 @@ impl Transition<'_> {
         })
     }
 
-    /// The values of what is watched, a time after the front, where all is known; `at` gives the states in between.
+    /// The values of the monitored functions at a time after the front, where the evaluation is known; `at`
+    /// gives the states in between.
     pub(crate) fn values(
         &self,
         closed: &[Closed],
@@ -216,6 +228,7 @@ impl Transition<'_> {
         let (q, u) = motion.split(&y);
         let inputs = motion.inputs(t, &y)?;
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
+        let distances = self.distances(closed, watched, &state)?;
         let mut conditions = Vec::new();
         let mut slips = Vec::new();
         let mut f = 1.0;
@@ -238,52 +251,108 @@ impl Transition<'_> {
                 Watched::Gap(contact) => {
                     match self.front.phases[contact] {
                         Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
-                        // Its gap by integration of its rate, over the time where it was zero at the front;
-                        // less what its acceleration is rounded to.
+                        // The gap by integration of its rate, from the time when it was zero at the front;
+                        // minus the rounding error of its acceleration.
                         Phase::Open(Leaving::Lifted { risen, rounding }) => {
                             let mean = self.mean_rate(contact, after, at)? + 0.5 * rounding * after;
                             Ok(if risen > 0.0 { risen + after * mean } else { mean })
                         }
                         _ => {
-                            let gap = self.mechanism.gap(contact, &state)?.unwrap_or(1.0);
+                            let gap = distances[contact].gap.unwrap_or(1.0);
                             Ok(gap - self.watched_from(contact))
                         }
                     }
                 }
-                Watched::Entry(contact) => Ok(self.low() - self.validity(contact, &state)?),
-                Watched::End(place) => Ok(self.validity(closed[place].contact, &state)?),
+                Watched::Entry(contact) => Ok(self.low() - self.validity_in(contact, &distances)),
+                Watched::End(place) => Ok(self.validity_in(closed[place].contact, &distances)),
                 Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
                 Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
                 Watched::Slip(place) => Ok(slips.get(place).copied().unwrap_or(1.0)),
                 Watched::Jam => Ok(f - JAM),
-                Watched::User(index, sign) => Ok(sign * (self.options.events[index])(t, q, u)),
+                Watched::User(index, sign) => match (self.options.events[index])(t, q, u) {
+                    // One that is not comes to no zero, and steps would be shortened for ever.
+                    value if !value.is_finite() => Err(Failure::Input(format!(
+                        "the event function {index} is {value} at t = {t} s: it must be finite"
+                    ))),
+                    value => Ok(sign * value),
+                },
             })
             .collect()
     }
 
-    /// The rates of what is watched, a time after the front, of those of which they are known: of gaps that are
-    /// watched by their values.
+    /// The rates of the monitored functions at a time after the front, where they are known: those of gaps
+    /// that are monitored by their values.
     pub(crate) fn slopes(&self, watched: &[Watched], after: f64, y: &[f64]) -> Vec<Option<f64>> {
         let motion = self.motion(&[]);
         let t = self.front.t + after;
         let (q, u) = motion.split(y);
         let Ok(inputs) = motion.inputs(t, y) else { return vec![None; watched.len()] };
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
-        let rate = |what: &Watched| match *what {
-            Watched::Gap(contact)
-                if self.front.phases[contact] == Phase::Open(Leaving::Apart)
-                    // beside its face a gap has another rate
-                    && self.validity(contact, &state).is_ok_and(|validity| validity > 0.0) =>
-            {
-                self.mechanism.contact_velocity(contact, &state).ok().map(|velocity| velocity.x)
+        let known = |what: &Watched| match *what {
+            Watched::Gap(contact) => {
+                (self.front.phases[contact] == Phase::Open(Leaving::Apart)).then_some(contact)
             }
             _ => None,
+        };
+        let apart: Contacts = watched.iter().filter_map(known).collect();
+        if apart.is_empty() {
+            return vec![None; watched.len()];
+        }
+        let mut distances = Distances::from_elem(Distance::default(), apart.len());
+        let mut velocities = SmallVec::<[Vector3<f64>; FEW]>::from_elem(Vector3::zeros(), apart.len());
+        if self.mechanism.gaps(&apart, &state, &mut distances).is_err()
+            || self.mechanism.contact_velocities(&apart, &state, &mut velocities).is_err()
+        {
+            return vec![None; watched.len()];
+        }
+        let mut found = apart.iter().zip(distances.iter().zip(&velocities));
+        let rate = |what: &Watched| {
+            known(what)?;
+            let (&contact, (distance, velocity)) = found.next()?;
+            // beside a face the gap has another rate
+            let beside = self.ends(contact) && distance.validity.is_some_and(|validity| validity <= 0.0);
+            (!beside).then_some(velocity.x)
         };
         watched.iter().map(rate).collect()
     }
 
-    /// By how much angles turn in a step at most, beside what nine points show. `None` for a step that would be
-    /// looked at in too many pieces.
+    /// The distances, by contact, of those that are monitored by them.
+    fn distances(
+        &self,
+        closed: &[Closed],
+        watched: &[Watched],
+        state: &State<'_>,
+    ) -> Result<Distances, StateError> {
+        let by_distance = |what: &Watched| match *what {
+            Watched::Gap(contact) => match self.front.phases[contact] {
+                Phase::Open(Leaving::Bounced | Leaving::Lifted { .. }) => None,
+                _ => Some(contact),
+            },
+            Watched::Entry(contact) => Some(contact),
+            Watched::End(place) => Some(closed[place].contact),
+            _ => None,
+        };
+        let mut asked: Contacts = watched.iter().filter_map(by_distance).collect();
+        if asked.is_empty() {
+            return Ok(Distances::new());
+        }
+        asked.sort_unstable();
+        asked.dedup();
+        let mut found = Distances::from_elem(Distance::default(), asked.len());
+        self.mechanism.gaps(&asked, state, &mut found)?;
+        let mut distances = Distances::from_elem(Distance::default(), self.front.phases.len());
+        asked.iter().zip(found).for_each(|(&contact, distance)| distances[contact] = distance);
+        Ok(distances)
+    }
+
+    /// How far a contact is within what touches there; infinity where that does not end.
+    fn validity_in(&self, contact: usize, distances: &[Distance]) -> f64 {
+        let validity = distances[contact].validity.filter(|_| self.ends(contact));
+        validity.unwrap_or(f64::INFINITY)
+    }
+
+    /// The total rotation in a step beyond what nine points resolve. `None` for a step that would need too
+    /// many pieces.
     pub(crate) fn turns(&self, closed: &[Closed], step: &Step) -> Option<f64> {
         let (n, motion) = (self.mechanism.count(ComponentKind::Coordinate), self.motion(closed));
         if self.angles.are_none() {
@@ -302,9 +371,9 @@ impl Transition<'_> {
         (turns <= MOST_PIECES).then_some(turns)
     }
 
-    /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the
-    /// gap's rounding, which a short time would magnify, and does not vanish at the front. By Gauss's
-    /// five points.
+    /// The mean rate of a gap since the front, where it was zero, by Gauss's five-point rule. It has the sign
+    /// of the gap, but not its rounding error, which a short time would amplify; and it does not vanish at
+    /// the front.
     fn mean_rate(
         &self,
         contact: usize,
@@ -334,15 +403,15 @@ impl Transition<'_> {
         Ok(mean)
     }
 
-    /// Whether the gaps of contacts that leave are the integrals of their rates, as far as these are known by a few
-    /// points: a step in which a body turns far is too long for that.
+    /// Whether the gaps of contacts that lift off are the integrals of their rates with sufficient accuracy;
+    /// a step in which a body rotates far is too long for this.
     pub(crate) fn leaving_is_known(&self, step: &Step) -> Result<bool, SimulationError> {
         let h = step.h;
         let leaves = |contact: &usize| {
             matches!(self.front.phases[*contact], Phase::Open(Leaving::Bounced | Leaving::Lifted { .. }))
         };
         for contact in (0..self.front.phases.len()).filter(leaves) {
-            // Within a step beside a jam there may be no states.
+            // Near a jam there may be no states within a step.
             let Ok(mean) = self.mean_rate(contact, h, &mut |after| step.at(after / h)) else {
                 return Ok(false);
             };
@@ -356,7 +425,7 @@ impl Transition<'_> {
         Ok(true)
     }
 
-    /// Whether a contact that leaves and comes back at the end of a step is clearly apart in between.
+    /// Whether a contact that lifts off and returns at the end of a step is clearly open in between.
     pub(crate) fn rises(&self, step: &Step, contact: usize) -> Result<bool, SimulationError> {
         let (gap, _) = self.gap_in(step.t + 0.5 * step.h, &step.at(0.5), contact)?;
         Ok(gap > LIFTED * self.front.scales.length)
@@ -376,7 +445,8 @@ impl Transition<'_> {
         Ok((gap, self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x))
     }
 
-    /// Contacts that were about to leave are apart once their gaps are open; the step has just been taken.
+    /// Marks contacts that were about to lift off as open once their gaps are open; the step has just been
+    /// accepted.
     pub(crate) fn arm(&mut self, step: &Step) -> Result<(), SimulationError> {
         for contact in 0..self.front.phases.len() {
             let before = match self.front.phases[contact] {
@@ -399,7 +469,7 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// A contact that leaves, after a step.
+    /// The state of a contact that lifts off, after a step.
     fn risen(&self, contact: usize, before: f64, step: &Step) -> Result<Leaving, SimulationError> {
         let (step_start, h) = (step.t, step.h);
         let mut at = |after: f64| if h > 0.0 { step.at(after / h) } else { step.end.clone() };
@@ -408,7 +478,7 @@ impl Transition<'_> {
         Ok(Leaving::Lifted { risen: risen.max(0.0), rounding: 0.0 })
     }
 
-    /// Contacts that lift off here: what the rounding of their accelerations is.
+    /// Determines the rounding errors of the accelerations of contacts that lift off here.
     pub(crate) fn weigh_lifted(&mut self, here: &Evaluation) -> Result<(), SimulationError> {
         let lifted: Vec<usize> = (0..self.front.phases.len())
             .filter(|&contact| matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. })))
@@ -436,7 +506,8 @@ impl Transition<'_> {
     }
 }
 
-/// The slip of settled contacts along their directions, beside that at which a step ends, m/s; 1 of others.
+/// The slip of settled contacts along their directions, minus the slip at which a step ends, m/s; 1 for
+/// others.
 fn slips_left(closed: &[Closed], there: &Evaluation) -> Vec<f64> {
     closed
         .iter()

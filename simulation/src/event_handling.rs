@@ -1,4 +1,4 @@
-//! Handles an event within a step: goes to the state there, and changes the modes.
+//! Handles an event within a step: moves the front to the event, and changes the modes.
 
 use nalgebra::{DVector, Vector2};
 
@@ -10,21 +10,21 @@ use crate::mode_selection::{Decision, choose};
 use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::pair::Friction;
 use crate::phase::{Closed, Leaving, Phase};
-use crate::slip_end::{ENDING, may_end, time_of_slip};
+use crate::slip_end::{ENDING, has_passed, may_end, straight, time_of_slip};
 use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{EventKind, SimulationError};
 
-/// The step after an event is no more than so many times as long as the part of the step before it.
+/// The step after an event is at most this many times as long as the part of the step before it.
 const AFTER: f64 = 10.0;
 /// The greatest number of events without progress in time.
 const CROWD: usize = 1000;
-/// So many events must advance the motion by this part of the time of the problem.
+/// This number of events must advance the motion by [`ADVANCE`] of the time of the problem.
 const EVENTS: usize = 500;
 const ADVANCE: f64 = 1e-7;
 
 impl Transition<'_> {
-    /// Goes to an event and handles it.
+    /// Moves to an event and handles it.
     pub(crate) fn handle_event(
         &mut self,
         closed: &[Closed],
@@ -35,7 +35,7 @@ impl Transition<'_> {
         let mut step = self.at_event(closed, &whole, watched, &crossing)?;
         self.front.next_settled = whole.next;
         self.front.next = match watched {
-            // The step goes on as it would have.
+            // The step continues as without the event.
             Watched::Slip(_) => whole.next,
             _ => whole.next.min((AFTER * step.h).max(FIRST * self.front.scales.time)),
         };
@@ -63,9 +63,9 @@ impl Transition<'_> {
                 }
                 if rate >= 0.0 {
                     let leaves = matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. }));
-                    // It only touches.
+                    // The bodies only touch.
                     self.front.phases[contact] = Phase::Open(Leaving::NOW);
-                    // One that leaves and touches again at once does not leave.
+                    // A contact that lifts off and touches again at once does not lift off.
                     return if leaves { self.stay(contact) } else { Ok(()) };
                 }
                 self.strike(contact)
@@ -76,7 +76,7 @@ impl Transition<'_> {
             Watched::Jam => self.jammed(closed),
             Watched::User(index, _) => {
                 self.push(None, EventKind::Zero(index));
-                // Past the zero, so that it is not found again.
+                // Slightly past the zero, so that it is not found again.
                 let small = 1e-12 * self.front.t.abs().max(5e-3 * self.front.scales.time);
                 if let Some(mut past) = self.part(closed, small) {
                     self.commit(&mut past)?;
@@ -86,7 +86,8 @@ impl Transition<'_> {
         }
     }
 
-    /// A contact that was about to leave has not: decides its mode with those of all closed contacts.
+    /// A contact that was about to lift off has not: decides its mode together with those of all closed
+    /// contacts.
     pub(crate) fn stay(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         let closed = |&other: &usize| other == contact || was[other].is_closed();
@@ -107,13 +108,14 @@ impl Transition<'_> {
         self.jams(closed[place].contact)
     }
 
-    /// The contacts, by place, whose slip is so small that it ends now: all that may end within 3 ns are
-    /// supposed to have stopped, and the forces tell which of them stick. Slip that small ends where sticking
+    /// The contacts, by index, whose slip is so small that it ends now. All that may end within 3 ns are
+    /// assumed to have stopped, and the forces decide which of them stick. Slip that small ends if sticking
     /// is possible (docs/theory.md, section 17.11).
     pub(crate) fn stops(&self, closed: &[Closed], here: &Evaluation, speeds: &[f64]) -> Vec<usize> {
         let ending = ENDING * self.front.scales.time;
         let ends = |place: usize| {
             time_of_slip(here, place, &self.front.scale).is_some_and(|left| left < 3.0 * ending)
+                || has_passed(here, place, &self.front.scale)
                 || may_end(here, place, speeds, &self.front.scale, 3.0 * ending)
         };
         let stopped: Vec<usize> =
@@ -130,8 +132,8 @@ impl Transition<'_> {
             }
             Err(_) => Vec::new(),
         };
-        // Slip falls to zero where sliding friction could hold the contact; static friction holds it only once it
-        // is there, which is where slip has no other direction.
+        // Slip decreases to zero if sliding friction could hold the contact; static friction holds it only
+        // afterwards. So slip has no other direction there.
         let slides = |place: usize| closed[place].slides.is_some();
         let sliding: Vec<Friction> = closed.iter().map(|closed| Friction::same(closed.mu)).collect();
         let found: Vec<usize> = sticking(&sliding);
@@ -149,8 +151,8 @@ impl Transition<'_> {
         if friction == sliding { Vec::new() } else { sticking(&friction) }
     }
 
-    /// Settled slip is about to end, as its rate at the start of the step told. Where it neither sticks nor has longer to
-    /// go its direction is integrated from here on: it passes zero by.
+    /// Settled slip is about to end, as predicted by its rate at the start of the step. If it neither sticks
+    /// nor continues for longer, its direction is integrated from here on, since slip misses zero.
     fn settled_slip_ends(&mut self, closed: &[Closed], place: usize) -> Result<(), SimulationError> {
         let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
         let here = here.map_err(|failure| self.failure(failure))?;
@@ -172,15 +174,16 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// The contacts, by place, whose settled slip ends with that of this one and begins anew, another way: those that
-    /// may end at the same time. Slip that falls along a settled direction meets zero; what it does from there does not
-    /// depend on how it came.
-    fn turns_round(&self, closed: &[Closed], here: &Evaluation, place: usize) -> Vec<usize> {
+    /// The contacts, by index, whose slip ends together with that of this one and begins again in another
+    /// direction: those that may end at the same time. Slip that decreases along a settled direction, and slip
+    /// in a plane of motion, reaches zero; its continuation does not depend on how it got there.
+    pub(crate) fn turns_round(&self, closed: &[Closed], here: &Evaluation, place: usize) -> Vec<usize> {
         let within = 3.0 * ENDING * self.front.scales.time;
         let ends = |&other: &usize| {
-            closed[other].turning.is_some()
-                && (other == place
-                    || time_of_slip(here, other, &self.front.scale).is_some_and(|left| left < within))
+            other == place
+                || has_passed(here, other, &self.front.scale)
+                || (closed[other].turning.is_some()
+                    && time_of_slip(here, other, &self.front.scale).is_some_and(|left| left < within))
         };
         let ended: Vec<usize> = (0..closed.len()).filter(ends).collect();
         let mut slips: Vec<Option<Vector2<f64>>> = here.holds.iter().map(Hold::direction).collect();
@@ -220,10 +223,14 @@ impl Transition<'_> {
         self.slip_ended(&stopped)
     }
 
+    /// Events closer to each other than this, s, are at one time.
+    pub(crate) fn instant(&self) -> f64 {
+        1e-12 * self.front.t.abs().max(5.0 * self.front.scales.time)
+    }
+
     /// Counts events that follow each other without progress.
     pub(crate) fn crowded(&mut self, before: f64) -> Result<(), SimulationError> {
-        let close = 1e-12 * self.front.t.abs().max(5.0 * self.front.scales.time);
-        if self.front.t - before > close {
+        if self.front.t - before > self.instant() {
             self.front.crowd = 0;
         }
         self.front.crowd += 1;
@@ -242,13 +249,3 @@ impl Transition<'_> {
         Ok(())
     }
 }
-
-/// Whether slip falls along its direction: it meets zero, and does not turn before.
-fn straight(here: &Evaluation, place: usize) -> bool {
-    let (Hold::Slide(d), Some(forces)) = (&here.holds[place], here.forces.as_ref()) else { return false };
-    let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
-    rate.dot(d) <= -STRAIGHT * rate.norm()
-}
-
-/// The cosine of the angle between slip that falls straight to zero and its rate, at least.
-const STRAIGHT: f64 = 1.0 - 1e-9;

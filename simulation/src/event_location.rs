@@ -6,62 +6,62 @@
 //! this excludes a zero are skipped, on intervals in which p' cannot vanish the ends are compared, and all
 //! others are halved. So no extremum is missed.
 //!
-//! A function that turns many times between the points may look smooth at them. So a step is looked at in
-//! pieces, in each of which angles turn by a few radians at most, and the slope of the polynomial is compared
-//! with that of the function, which is known of gaps (docs/theory.md, section 17.12).
+//! A function that oscillates between the points may look smooth at them. So a step is examined in pieces, in
+//! each of which angles change by a few radians at most, and the slope of the polynomial is compared with
+//! that of the function, which is known for gaps (docs/theory.md, section 17.12).
 
 use std::sync::LazyLock;
 
-/// Degrees tried, each twice the one before: points are used again. The first is left out where more turns than
-/// its points show.
+/// The degrees that are tried; each is twice the previous one, so that points are reused. The first is
+/// skipped if the function rotates faster than its points resolve.
 const DEGREES: [usize; 4] = [4, 8, 16, 32];
-/// The part of the turns that nine points show which five points show.
+/// The part of the rotation resolved by nine points that five points resolve.
 const FEW_TURNS: f64 = 0.5;
-/// Most halvings of a step where a function is not smooth.
+/// Largest number of bisections of a step in which a function is not smooth.
 const DEPTH: usize = 24;
 
-/// Most evaluations of the functions in a step, and beside these in each piece of it.
+/// Largest number of evaluations of the functions in a step, and additionally in each of its pieces.
 const MOST: usize = 2000;
 const OF_A_PIECE: usize = 36;
-/// A step in so many halves, at least, before what seems to be rounding is taken for it.
+/// A step is bisected at least this many times before a deviation is attributed to rounding.
 const HALVED: usize = 3;
 
-/// Places of a piece, in [-1, 1], at which slopes are compared, and the greatest difference relative to what the
-/// polynomial's slope is made of.
+/// Points of a piece, in [-1, 1], at which slopes are compared, and the greatest difference relative to the
+/// terms of the polynomial's slope.
 const SLOPES_AT: [f64; 2] = [-0.371, 0.653];
 const SLOPES_DIFFER: f64 = 1e-3;
 
-/// Functions whose first crossing is looked for.
+/// Functions whose first zero crossing is sought.
 pub(crate) struct Functions<'f> {
-    /// how many
+    /// number of functions
     pub count: usize,
-    /// what rounding may do to each
+    /// bounds of their rounding errors
     pub noise: &'f [f64],
-    /// all of them at a fraction of the step, or nothing where they cannot be evaluated
+    /// all of them at a fraction of the step; `None` if they cannot be evaluated there
     pub values: &'f mut dyn FnMut(f64) -> Option<Vec<f64>>,
-    /// their rates by the fraction, of those of which they are known
+    /// their rates with respect to the fraction, where they are known
     pub slopes: &'f mut dyn FnMut(f64) -> Vec<Option<f64>>,
 }
 
-/// The functions have no values somewhere in the step, or it is too long for what they do: a shorter one must
-/// be looked at.
+/// The functions have no values somewhere in the step, or the step is too long for them: a shorter one must
+/// be examined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Unresolved;
 
-/// Where a function falls below zero.
+/// A place where a function falls below zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
-    /// Its number.
+    /// Index of the function.
     pub function: usize,
     /// Fraction of the step.
     pub place: f64,
 }
 
-/// cos(k pi / 32) over a whole turn.
+/// cos(k pi / 32) over a full turn.
 static COSINES: LazyLock<[f64; 64]> =
     LazyLock::new(|| std::array::from_fn(|k| (k as f64 * std::f64::consts::PI / 32.0).cos()));
 
-/// cos(m pi / n) by whole turns, so that equal angles give equal bits.
+/// cos(m pi / n), reduced to one turn, so that equal angles give equal bits.
 fn cosine(m: usize, n: usize) -> f64 {
     let turn = m % (2 * n);
     match COSINES.len() / 2 % n {
@@ -75,12 +75,12 @@ struct Chebyshev {
     coefficients: Vec<f64>,
     /// Bound of the second derivative.
     bend: f64,
-    /// What it may differ from the function.
+    /// Bound of the difference from the function.
     error: f64,
 }
 
 impl Chebyshev {
-    /// Through values at cos(k pi / n), k = 0 .. n.
+    /// The polynomial through values at cos(k pi / n), k = 0 .. n.
     fn through(values: &[f64]) -> Self {
         let n = values.len() - 1;
         let nf = n as f64;
@@ -100,7 +100,7 @@ impl Chebyshev {
         });
         let bend = bend.sum();
         let last = coefficients.iter().rev().take(3).map(|c| c.abs()).fold(0.0, f64::max);
-        // The coefficients are sums of the values: rounding leaves an error even where the last of them
+        // The coefficients are sums of the values, so rounding leaves an error even if the last of them
         // vanish.
         let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
         Self { coefficients, bend, error: 2.0 * last + 4.0 * f64::EPSILON * size }
@@ -124,7 +124,7 @@ impl Chebyshev {
         (first + x * b1 - b2, b1 + x * d1 - d2)
     }
 
-    /// Whether its slope at a place is this one, as nearly as interpolation gives slopes.
+    /// Whether its slope at a point is the given one, up to the accuracy of interpolated slopes.
     fn has_slope(&self, x: f64, slope: f64, noise: f64) -> bool {
         let terms = |(k, c): (usize, &f64)| (k * k) as f64 * c.abs();
         let size: f64 = self.coefficients.iter().enumerate().map(terms).sum();
@@ -132,7 +132,7 @@ impl Chebyshev {
         (self.at(x).1 - slope).abs() <= SLOPES_DIFFER * size.max(slope.abs()) + rounding
     }
 
-    /// The first place in [low, high] where the polynomial falls below -noise.
+    /// The first point in [low, high] where the polynomial falls below -noise.
     fn first_below(&self, low: f64, high: f64, noise: f64, depth: usize) -> Option<f64> {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let (value, slope) = self.at(middle);
@@ -141,7 +141,7 @@ impl Chebyshev {
             return None;
         }
         if reach <= f64::EPSILON * self.size() {
-            // It changes no more: a function that is zero all the time is not halved for ever.
+            // The polynomial is constant here: bisection of a function that is always zero must end.
             return (value < -noise).then_some(low);
         }
         let monotone = slope.abs() > self.bend * half;
@@ -156,7 +156,7 @@ impl Chebyshev {
             .or_else(|| self.first_below(middle, high, noise, depth - 1))
     }
 
-    /// The zero between a place where the polynomial is not below zero and one where it is.
+    /// The zero between a point where the polynomial is not negative and one where it is.
     fn bisect(&self, mut low: f64, mut high: f64) -> f64 {
         if self.at(low).0 <= 0.0 {
             return low;
@@ -169,12 +169,12 @@ impl Chebyshev {
     }
 }
 
-/// The first crossing of functions over the fractions [0, 1] of a step. `turns` is how far angles turn in it beside
-/// what nine points show: it is looked at in so many pieces at least.
+/// The first crossing of functions over the fractions [0, 1] of a step. `turns` is the rotation in the step
+/// beyond what nine points resolve; it determines the least number of pieces.
 ///
 /// # Errors
 ///
-/// [`Unresolved`] where functions have no values, or too many evaluations were needed.
+/// [`Unresolved`] if functions have no values, or too many evaluations were needed.
 pub(crate) fn first_crossing(
     functions: &mut Functions<'_>,
     turns: f64,
@@ -275,7 +275,7 @@ fn within(
         }
     }
     if depth == 0 || high - low < 1e-12 {
-        // Not smooth even here: the ends tell.
+        // Not smooth even here: the values at the ends decide.
         let ends = (values(functions, low), values(functions, high));
         if let (Some(_), Some(last)) = ends {
             for function in unresolved {
@@ -320,7 +320,7 @@ mod tests {
         crossing(0.0, &mut |x| Some(f(x))).unwrap()
     }
 
-    /// A cosine of many turns looks constant at the nine points of a piece; its slopes tell.
+    /// A cosine with many periods looks constant at the nine points of a piece; its slopes reveal it.
     #[test]
     fn turns_between_the_points_are_seen_by_their_slopes() {
         let mut missed = 0;
@@ -374,7 +374,7 @@ mod tests {
         assert!(first(|x: f64| (x - 0.3).powi(2)).is_none());
     }
 
-    /// Rounding that no polynomial resolves, and functions without values, cost a bounded number of
+    /// Rounding errors that no polynomial resolves, and functions without values, cost a bounded number of
     /// evaluations.
     #[test]
     fn the_work_is_bounded() {
@@ -395,13 +395,13 @@ mod tests {
         assert!((found.unwrap().unwrap() - 0.625).abs() < 1e-8 && count < 1000, "{count}");
         let (found, count) = evaluated(&|x| (x < 0.7).then_some(1.0));
         assert!(found == Err(Unresolved) && count < 100, "{count}");
-        // As rough as it is large.
+        // Noise as large as the function.
         let (_, count) = evaluated(&|x| Some(1.0001 + (1e9 * x).sin()));
         assert!(count <= MOST + OF_A_PIECE, "{count}");
     }
 
-    /// A force that is zero as long as the contact lasts, exactly or but for rounding, neither crosses nor
-    /// costs more than a few halvings.
+    /// A force that is zero during the whole contact, exactly or up to rounding, does not cross zero and
+    /// costs only a few bisections.
     #[test]
     fn functions_that_stay_zero_are_not_halved_for_ever() {
         assert!(first(|_| 0.0).is_none());

@@ -1,5 +1,5 @@
 //! Refines the time of an event, which the dense output of a step gives to its own accuracy, to rounding: the
-//! motion is integrated to each trial anew.
+//! motion is integrated again up to each trial time.
 
 use crate::SimulationError;
 use crate::event_functions::Watched;
@@ -8,11 +8,12 @@ use crate::phase::{Closed, Leaving, Phase};
 use crate::stepper::Step;
 use crate::transition::Transition;
 
-/// The most trials of a time. Secants need three to five; where an input bends, intervals are halved.
+/// Largest number of trials for a time. Secants need three to five; at kinks of an input intervals are
+/// bisected.
 const TRIALS: usize = 80;
-/// By this part the slip at which a step with a settled direction ends may differ from that which was asked for.
+/// Relative deviation of the slip at the end of a step with a settled direction from the requested one.
 const NEARLY: f64 = 0.2;
-/// After this many trials intervals are halved.
+/// After this many trials intervals are bisected.
 const SECANTS: usize = 8;
 
 impl Transition<'_> {
@@ -33,7 +34,7 @@ impl Transition<'_> {
         }
     }
 
-    /// A gap closes: Newton's method, for its rate is known.
+    /// A gap closes: Newton's method, since its rate is known.
     fn at_gap(
         &self,
         closed: &[Closed],
@@ -47,7 +48,8 @@ impl Transition<'_> {
             step = part;
             let (gap, rate) = self.gap_at(&step, contact)?;
             let gap = match self.front.phases[contact] {
-                // It has risen so far that its gap is known; over a long way its mean rate is not as exact.
+                // The gap is so large that its value is known; over a long time its mean rate is less
+                // accurate.
                 Phase::Open(Leaving::Lifted { .. }) if self.rises(&step, contact)? => gap,
                 Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
                     let h = step.h;
@@ -55,7 +57,7 @@ impl Transition<'_> {
                     let value = self.values(closed, &[Watched::Gap(contact)], h, None, &mut at);
                     value.map_err(|failure| self.failure(failure))?[0]
                 }
-                // It has hardly left: its time is that of the interpolation.
+                // The contact has hardly lifted off: its time is that of the interpolation.
                 Phase::Open(Leaving::Lifted { .. }) => 0.0,
                 _ => gap,
             };
@@ -69,8 +71,8 @@ impl Transition<'_> {
         Ok(step)
     }
 
-    /// Another function falls through zero: secants, kept between a time at which it is positive and one at
-    /// which it is negative once these are known.
+    /// Another function decreases through zero: secants, bracketed by times at which it is positive and
+    /// negative once these are known.
     fn at_zero(&self, closed: &[Closed], whole: &Step, watched: Watched, mut after: f64) -> Step {
         let trial = |after: f64| {
             let step = self.part_again(closed, whole, after)?;
@@ -79,7 +81,7 @@ impl Transition<'_> {
             let value = self.values(closed, &[watched], h, None, &mut at).ok()?[0];
             Some((step, value))
         };
-        // Settled slip is about to end there: its end is found by itself.
+        // Settled slip is about to end there: its end is found separately.
         let enough = match watched {
             Watched::Slip(place) => {
                 closed[place].turning.as_ref().map_or(0.0, |turning| NEARLY * turning.least)
@@ -94,7 +96,7 @@ impl Transition<'_> {
         }
         let (mut positive, mut negative) = (None, None);
         let mut last = whole.clone();
-        // The first secant is a short one. It may lie across a bend of an input.
+        // The first secant is short; it may span a kink of an input.
         let mut width = (1e-4 * after.min(whole.h - after).max(1e-3 * whole.h)).min(0.5 * after);
         let mut before = trial(after - width).map(|(_, value)| (after - width, value));
         for count in 0..TRIALS {
@@ -117,7 +119,7 @@ impl Transition<'_> {
                 }
                 (Some(low), Some(high)) => 0.5 * (low + high),
                 _ if slope < 0.0 => secant,
-                // It does not change here: the zero is looked for on the side where it must be.
+                // The function is constant here: search on the side where the zero must be.
                 _ => {
                     width *= 8.0;
                     if value > 0.0 { after + width } else { after - width }
@@ -133,8 +135,8 @@ impl Transition<'_> {
     }
 }
 
-/// Whether two times since the front are the same but for rounding: the state is as exact as they are,
-/// however late it is.
+/// Whether two times since the front agree up to rounding; the accuracy of the state does not depend on the
+/// absolute time.
 fn settled(next: f64, after: f64) -> bool {
     (next - after).abs() <= 2.0 * f64::EPSILON * after
 }

@@ -1,9 +1,10 @@
-//! A motion that another program drives: it changes the inputs at times of its own choice, or integrates the states itself
-//! and asks for their rates, for the functions whose zeros are events, and for what follows at an event. FMI calls these
-//! co-simulation and model exchange (docs/fmu.md).
+//! A motion that is driven by another program: the program changes the inputs at times of its choice, or
+//! integrates the states itself and reads their rates, the functions whose zeros are events, and the results
+//! of events. FMI calls these co-simulation and model exchange (docs/fmu.md).
 //!
-//! Whoever integrates keeps the modes of the contacts frozen from event to event, as a step of [`Simulation::advance`] does:
-//! the rates are those of the same right-hand side, and what an event changes is decided by the same transitions.
+//! An integrating program keeps the modes of the contacts constant between events, as a step of
+//! [`Simulation::advance`] does: the rates are those of the same right-hand side, and the changes at an event
+//! are decided by the same transitions.
 
 use hodograph::State;
 
@@ -17,42 +18,43 @@ use crate::torques::Turning;
 use crate::transition::Transition;
 use crate::{ContactForces, ErrorKind, Event, Progress, Simulation, SimulationError};
 
-/// A function whose zero is an event: it is positive while the modes of all contacts last.
+/// A function whose zero is an event: it is positive as long as the modes of all contacts are constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Indicator {
-    /// number of the contact; `None` of [`IndicatorKind::Jam`]
+    /// index of the contact; `None` for [`IndicatorKind::Jam`]
     pub contact: Option<usize>,
-    /// what it watches
+    /// the quantity that it monitors
     pub kind: IndicatorKind,
 }
 
-/// What an [`Indicator`] watches. Where it watches nothing, as the gap of a closed contact, its value is 1.
+/// The quantities that an [`Indicator`] monitors. An inactive indicator, such as the gap of a closed contact,
+/// has the value 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IndicatorKind {
-    /// gap of an open contact, m; beside a face that ends, the distance from the face where that is more
+    /// gap of an open contact, m; beside a bounded face the distance from the face if that is greater
     Gap,
-    /// how far a closed contact is from where its face or edge ends, m
+    /// distance of a closed contact from the boundary of its face or edge, m
     End,
     /// normal force of a closed contact, N
     NormalForce,
-    /// (mu lambda_n)^2 less the square of the friction of a contact that sticks, N^2
+    /// (mu lambda_n)^2 minus the square of the friction of a sticking contact, N^2
     Friction,
     /// slip of a sliding contact along the direction that it had last, m/s
     Slip,
-    /// as `Friction`, of bodies that rolling friction holds
+    /// like `Friction`, for bodies that rolling friction holds
     RollingFriction,
-    /// as `Slip`, of bodies that roll: the relative angular velocity times the length of the torque
+    /// like `Slip`, for rolling bodies: the relative angular velocity times the length of the torque
     Rolling,
-    /// as `Friction`, of bodies that spinning friction holds
+    /// like `Friction`, for bodies that spinning friction holds
     SpinningFriction,
-    /// as `Slip`, of bodies that turn about the normal
+    /// like `Slip`, for bodies that rotate about the normal
     Spinning,
     /// the least f of the sliding contacts, relative to their reduced masses: a contact jams where it vanishes
     Jam,
 }
 
 impl IndicatorKind {
-    /// A stable lower-case name.
+    /// The name of the kind: lower case, and stable between versions.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gap => "gap",
@@ -69,7 +71,7 @@ impl IndicatorKind {
     }
 }
 
-/// A function watched, with the contact or torque by its number among both.
+/// A monitored function, with the index of the contact or torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Frozen {
     Gap(usize),
@@ -80,17 +82,17 @@ pub(crate) enum Frozen {
     Jam,
 }
 
-/// Slip below this part of the greatest speeds so far is none yet, after it began.
+/// Slip below this part of the greatest speeds so far counts as zero shortly after it began.
 const BEGINS: f64 = 1e-11;
-/// A size of speeds beside which every slip against its direction is none.
+/// A speed that is larger than all others, so that every slip against its direction counts as zero.
 const BOUNDLESS: f64 = 1e150;
 
 impl Simulation<'_> {
-    /// As [`Simulation::advance`], but no step goes beyond `until`, so that inputs can be changed there.
+    /// Like [`Simulation::advance`], but no step goes beyond `until`, so that inputs can be changed there.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::advance`].
+    /// Those of [`Simulation::advance`].
     pub fn advance_exactly(&mut self, until: f64) -> Result<Progress, SimulationError> {
         let breaks = &mut self.options.breaks;
         let place = breaks.partition_point(|&time| time < until);
@@ -105,12 +107,13 @@ impl Simulation<'_> {
         progress
     }
 
-    /// Changes the held inputs at [`Simulation::time`]; [`Simulation::advance_exactly`] led there.
+    /// Changes the constant inputs at [`Simulation::time`], to which [`Simulation::advance_exactly`]
+    /// advanced.
     ///
     /// # Errors
     ///
-    /// The inputs are not finite or not as many as the mechanism has; the motion was followed beyond this time; the contacts
-    /// have no forces under them.
+    /// The inputs are not finite or have the wrong number; the motion was advanced beyond this time; the
+    /// contacts have no forces under these inputs.
     pub fn set_inputs(&mut self, inputs: &[f64]) -> Result<(), SimulationError> {
         let refused = |message: String| Err(self.transition().error(None, ErrorKind::BadInput(message)));
         if inputs.len() != self.front.held.len() {
@@ -133,11 +136,11 @@ impl Simulation<'_> {
         self.take(|transition| transition.change_inputs(inputs))
     }
 
-    /// Rates of coordinates, then speeds, in a state, while the modes of the contacts last.
+    /// Rates of coordinates, then speeds, in a state, for constant modes of the contacts.
     ///
     /// # Errors
     ///
-    /// The mechanism has no equations of motion there, or its closed contacts have no forces.
+    /// The mechanism has no equations of motion in this state, or its closed contacts have no forces.
     pub fn rates(&self, state: &State<'_>, rates: &mut [f64]) -> Result<(), SimulationError> {
         let transition = self.transition();
         let found = transition.frozen(state).map_err(|failure| transition.failure(failure))?;
@@ -146,11 +149,11 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// As [`Simulation::contact_forces`], in a state, while the modes of the contacts last.
+    /// Like [`Simulation::contact_forces`], but in the given state, for constant modes of the contacts.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::rates`].
+    /// Those of [`Simulation::rates`].
     pub fn contact_forces_in(&self, state: &State<'_>) -> Result<ContactForces, SimulationError> {
         let transition = self.transition();
         let closed = transition.closed();
@@ -189,22 +192,22 @@ impl Simulation<'_> {
         transition.frozen_functions().into_iter().map(kind).collect()
     }
 
-    /// Values of [`Simulation::indicators`] in a state, while the modes of the contacts last.
+    /// Values of [`Simulation::indicators`] in a state, for constant modes of the contacts.
     ///
     /// # Errors
     ///
-    /// The mechanism cannot be evaluated there.
+    /// The mechanism cannot be evaluated in this state.
     pub fn indicator_values(&self, state: &State<'_>) -> Result<Vec<f64>, SimulationError> {
         let transition = self.transition();
         transition.frozen_values(state).map_err(|failure| transition.failure(failure))
     }
 
-    /// Tells that the integration has come to a state without an event: contacts that leave may be apart now, and slip has
-    /// another direction.
+    /// Reports that the integration has reached a state without an event: contacts that lift off may be open
+    /// now, and slip has another direction.
     ///
     /// # Errors
     ///
-    /// The mechanism cannot be evaluated there.
+    /// The mechanism cannot be evaluated in this state.
     pub fn step_completed(&mut self, state: &State<'_>) -> Result<(), SimulationError> {
         self.take(|transition| {
             transition.goes_to(state);
@@ -212,13 +215,13 @@ impl Simulation<'_> {
         })
     }
 
-    /// Decides what happens in a state: contacts whose indicators are not positive strike, slip, stick or lift off as in
-    /// [`Simulation::advance`], and other inputs may change modes. [`Simulation::time`] and the state are then those after
-    /// the events, which are answered.
+    /// Handles the events in a state: contacts whose indicators are not positive collide, slip, stick or lift
+    /// off as in [`Simulation::advance`], and changed inputs may change modes. [`Simulation::time`] and the
+    /// state are then those after the events, which are returned.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::advance`].
+    /// Those of [`Simulation::advance`].
     pub fn continue_from(&mut self, state: &State<'_>) -> Result<Vec<Event>, SimulationError> {
         self.step = None;
         self.take(|transition| transition.handle_here(state))?;
@@ -226,7 +229,8 @@ impl Simulation<'_> {
         Ok(self.queue.drain(..).collect())
     }
 
-    /// The time at which something happens that no indicator tells: bounces that are lower than the tolerance end.
+    /// The time of the next event that no indicator detects: the end of bounces that are lower than the
+    /// tolerance.
     pub fn next_time(&self) -> Option<f64> {
         self.transition().limit()
     }
@@ -237,7 +241,7 @@ impl Simulation<'_> {
     }
 }
 
-/// All that the future of a motion depends on, beside its mechanism and its options.
+/// Everything on which the future of a motion depends, except its mechanism and its options.
 #[cfg(feature = "serde")]
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Saved {
@@ -246,14 +250,14 @@ pub struct Saved {
 
 #[cfg(feature = "serde")]
 impl Simulation<'_> {
-    /// What [`Simulation::restore`] takes back, at a time to which [`Simulation::advance_exactly`] or
-    /// [`Simulation::continue_from`] led.
+    /// The data for [`Simulation::restore`], at a time to which [`Simulation::advance_exactly`] or
+    /// [`Simulation::continue_from`] advanced.
     pub fn save(&self) -> Saved {
         Saved { front: self.front.clone() }
     }
 
-    /// Continues as the motion that was saved would have, with the same results. Answers whether it is one of this
-    /// mechanism; nothing changes where it is not.
+    /// Restores a saved motion, which continues with the same results. Returns whether it belongs to this
+    /// mechanism; if not, nothing changes.
     pub fn restore(&mut self, saved: Saved) -> bool {
         let sizes = |front: &Front| {
             let contacts = [
@@ -273,7 +277,7 @@ impl Simulation<'_> {
             return false;
         }
         self.front = saved.front;
-        // How slip turned in the last step is told anew by the next one.
+        // The rate at which slip turned in the last step is determined again by the next one.
         self.front.turnings = vec![None; self.front.phases.len()];
         self.view = (self.front.t, self.front.y.clone());
         (self.step, self.failed) = (None, None);
@@ -283,7 +287,7 @@ impl Simulation<'_> {
 }
 
 impl Transition<'_> {
-    /// The functions that are watched, whatever the modes are.
+    /// The monitored functions, independent of the modes.
     pub(crate) fn frozen_functions(&self) -> Vec<Frozen> {
         let mut all = Vec::new();
         for index in 0..self.front.phases.len() {
@@ -303,12 +307,12 @@ impl Transition<'_> {
         all
     }
 
-    /// All that is known of a state in the modes of the front. Slip against its direction, which an integration meets
-    /// beyond an event, keeps the friction that it had: the rates are smooth there.
+    /// Evaluates a state in the modes of the front. Slip against its direction, which an integration produces
+    /// beyond an event, keeps its previous friction, so that the rates are smooth there.
     pub(crate) fn frozen(&self, state: &State<'_>) -> Result<Evaluation, Failure> {
         let mut closed = self.closed();
         for contact in &mut closed {
-            // Directions that followed from the state did so in the step that led here.
+            // Directions that follow from the state were computed in the step that led here.
             (contact.omega, contact.turning) = (None, None);
         }
         let mut y = [state.coordinates, state.speeds].concat();
@@ -318,7 +322,7 @@ impl Transition<'_> {
         motion.evaluate(state.time, &y)
     }
 
-    /// The values of the functions that are watched.
+    /// The values of the monitored functions.
     pub(crate) fn frozen_values(&self, state: &State<'_>) -> Result<Vec<f64>, Failure> {
         let closed = self.closed();
         let all = self.frozen_functions();
@@ -334,7 +338,7 @@ impl Transition<'_> {
                 }
                 here = Some(evaluation);
             }
-            // There are no forces in these modes any more.
+            // There are no forces in these modes.
             Some(Err(Failure::Contact(..) | Failure::NoForces)) => jam = -1.0,
             Some(Err(failure)) => return Err(failure),
             None => {}
@@ -350,12 +354,13 @@ impl Transition<'_> {
                     Phase::Open(leaving) => {
                         let gap = self.mechanism.gap(index, state)?.unwrap_or(1.0);
                         match leaving {
-                            // One that comes along the surface of its face has no gap but rounding.
+                            // A contact that comes along the surface of its face has a gap of rounding errors
+                            // only.
                             Leaving::Apart | Leaving::Near if self.ends(index) => {
                                 (gap - self.low()).max(-self.validity(index, state)?)
                             }
                             Leaving::Apart | Leaving::Near => gap,
-                            // What leaves has no gap yet that is more than rounding.
+                            // The gap of a contact that lifts off is not yet larger than its rounding error.
                             _ => (gap + self.lifted()).max(-self.validity(index, state)?),
                         }
                     }
@@ -378,12 +383,12 @@ impl Transition<'_> {
         all.iter().map(value).collect()
     }
 
-    /// The gap from which on a contact that leaves is apart, m.
+    /// The gap from which on a contact that lifts off counts as open, m.
     fn lifted(&self) -> f64 {
         LIFTED * self.front.scales.length
     }
 
-    /// Takes a state as the front.
+    /// Sets the front to a state.
     pub(crate) fn goes_to(&mut self, state: &State<'_>) {
         let n = state.coordinates.len();
         self.front.t = state.time;
@@ -397,7 +402,8 @@ impl Transition<'_> {
         }
     }
 
-    /// Contacts that left are apart once their gaps are open, and slip that goes forward has the direction it has now.
+    /// Contacts that lifted off count as open once their gaps are open, and slip that goes forward takes its
+    /// present direction.
     fn frozen_modes(&mut self, state: &State<'_>) -> Result<(), SimulationError> {
         for contact in 0..self.front.phases.len() {
             if let Phase::Open(Leaving::Bounced | Leaving::Lifted { .. }) = self.front.phases[contact]
@@ -412,7 +418,7 @@ impl Transition<'_> {
         }
         let closed = self.closed();
         if closed.iter().any(|closed| closed.slides.is_some()) {
-            // A state beside a jam may have no forces: directions stay.
+            // A state near a jam may have no forces; then directions stay.
             if let Ok(here) = self.frozen(state) {
                 for (contact, hold) in closed.iter().zip(&here.holds) {
                     if let Some(direction) = hold.direction() {

@@ -1,5 +1,5 @@
-//! What happens where a motion that another program integrates has come to a zero of an indicator: the transitions of a
-//! step's events, after the place of the event is found again.
+//! Handles events of a motion that another program integrates, where an indicator is zero: the transitions of
+//! a step's events, after the time of the event is found again.
 
 use hodograph::State;
 
@@ -13,18 +13,19 @@ use crate::phase::{Closed, Leaving, Phase};
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
-/// Slip below this part of the greatest speeds so far ends where its indicator is negative; other slip has turned by a
-/// right angle.
+/// If the indicator of slip is negative, slip below this part of the greatest speeds so far ends; greater
+/// slip has turned by a right angle.
 const ENDS: f64 = 1e-4;
-/// Impacts are handled up to this part of the time of the problem before the time at which they are found.
+/// Impacts are handled at most this part of the time of the problem before the time at which they are found.
 const LATEST: f64 = 0.1;
-/// Contacts strike together whose gaps closed within this part of the time by which their impact was found late.
+/// Contacts collide together if their gaps closed within this part of the delay with which their impact was
+/// found.
 const SAME: f64 = 1e-6;
-/// Most events that are handled at one time.
+/// Largest number of events that are handled at one time.
 const MOST: usize = 32;
 
 impl Transition<'_> {
-    /// What happens in this state.
+    /// Handles the events in this state.
     pub(crate) fn handle_here(&mut self, state: &State<'_>) -> Result<(), SimulationError> {
         let start = self.front.t;
         self.goes_to(state);
@@ -55,7 +56,8 @@ impl Transition<'_> {
         if changed { self.keep_or_decide() } else { Ok(()) }
     }
 
-    /// Handles what has crossed zero: gaps first, since an impact decides the modes of all that touch.
+    /// Handles the functions that crossed zero: gaps first, since an impact decides the modes of all closed
+    /// contacts.
     fn handle_crossed(&mut self, crossed: &[Frozen]) -> Result<(), SimulationError> {
         let closed = self.closed();
         let gaps: Vec<usize> = crossed
@@ -92,8 +94,9 @@ impl Transition<'_> {
         self.jammed(&closed)
     }
 
-    /// These gaps have closed a little before: what approaches strikes at the time at which the first of them was zero, and
-    /// the motion goes on from there to this time. An importer that finds an event late by some time errs by its square.
+    /// Handles gaps that closed a little earlier: approaching contacts collide at the time when the first gap
+    /// was zero, and the motion continues from there to the present time. If an importer finds an event late,
+    /// the error is quadratic in the delay.
     fn gaps_closed(&mut self, closed: &[Closed], gaps: &[usize]) -> Result<(), SimulationError> {
         let now = self.front.t;
         let (mut late, mut fastest, mut stay) = (0.0_f64, None, Vec::new());
@@ -139,7 +142,7 @@ impl Transition<'_> {
         Ok((gap, self.mechanism.contact_velocity(contact, &here).map_err(fault)?.x))
     }
 
-    /// Goes over a short time in the modes as they are, by the rule of the midpoint.
+    /// Advances over a short time in the present modes, by the midpoint rule.
     fn drift_by(&mut self, time: f64) -> Result<(), SimulationError> {
         if time == 0.0 || self.front.resting {
             self.front.t += time;
@@ -159,8 +162,8 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// Corrects the places so that these gaps are zero, as those of the closed contacts, which have no velocity then that would
-    /// count as an approach.
+    /// Corrects the positions so that these gaps are zero, like those of the closed contacts, and so that the
+    /// latter have no normal velocity that would count as an approach.
     fn close(&mut self, closed: &[Closed], gaps: &[usize]) -> Result<(), SimulationError> {
         let front = self.front.clone();
         let here = self.here_of(&front);
@@ -182,7 +185,8 @@ impl Transition<'_> {
         self.correct()
     }
 
-    /// Slip along the directions that these contacts had is not positive: it ends where it is small, and else has turned.
+    /// Slip along the previous directions of these contacts is not positive: small slip ends, and other slip
+    /// has turned.
     fn slips_ended(&mut self, closed: &[Closed], contacts: &[usize]) -> Result<(), SimulationError> {
         let front = self.front.clone();
         let here = self.here_of(&front);

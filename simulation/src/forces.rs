@@ -1,15 +1,19 @@
-//! Solves for the forces of closed contacts whose modes are known.
+//! Computes the forces of closed contacts with known modes.
 
 use hodograph::{ContactError, ContactMode, contact_force};
 use nalgebra::{DVector, Vector2, Vector3};
+use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::contact_problem::{self, Mode, Wanted};
 
+/// The lists of so many contacts need no memory from the heap.
+const FEW: usize = 4;
+
 /// A sliding contact with f / m_nn below this jams: its force grows without bound as f falls to zero.
 pub(crate) const JAM: f64 = 1e-6;
 
-/// What a closed contact does while the motion goes on.
+/// The mode of a closed contact during the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Hold {
     /// no slip
@@ -35,40 +39,42 @@ pub(crate) struct Forces {
     pub lambda: DVector<f64>,
     /// W lambda + beta.
     pub acceleration: DVector<f64>,
-    /// Whether no other forces give the same.
+    /// Whether the forces are unique for this motion.
     pub unique: bool,
-    /// How near the system is to having no solution: the least f / m_nn of a sliding contact, else 1.
+    /// The distance from a jam: the least f / m_nn of a sliding contact; 1 without sliding contacts.
     pub f: f64,
-    /// The place of that contact.
+    /// The index of that contact.
     pub jams: Option<usize>,
-    /// Forces up to this are rounding, N.
+    /// Forces up to this are rounding errors, N.
     pub rounding: f64,
+    /// The greatest acceleration of a contact without contact forces.
+    pub free: f64,
 }
 
 impl Forces {
-    /// The rates that they give to the speeds (p).
+    /// The rates of the speeds under these forces (p).
     pub fn rates(&self, support: &ClosedContacts) -> DVector<f64> {
         &support.response * &self.lambda
     }
 
-    /// The force of one.
+    /// The force of a contact.
     pub fn of(&self, i: usize) -> Vector3<f64> {
         ClosedContacts::three(&self.lambda, i)
     }
 }
 
-/// Why there are none.
+/// Why there are no forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Lacking {
-    /// The contact with this place among the closed ones has none.
+    /// The contact with this index among the closed ones has none.
     Contact(usize, ContactError<f64>),
-    /// No forces of all contacts fit their modes.
+    /// No forces of all contacts are compatible with their modes.
     Common,
 }
 
-/// Forces under which sticking contacts do not accelerate and sliding ones do not part. Where many forces give
-/// the same motion, they are the analytic centre of those that the laws allow ([`contact_problem`]); `guess`
-/// only saves work. With [`Wanted::Motion`] they are any of these where nothing slips.
+/// Forces under which sticking contacts do not accelerate and sliding ones do not separate. If many forces
+/// give the same motion, the analytic centre of those that the laws allow is taken ([`contact_problem`]);
+/// `guess` only saves work. With [`Wanted::Motion`] any of these forces may be returned if no contact slips.
 pub(crate) fn forces(
     support: &ClosedContacts,
     holds: &[Hold],
@@ -86,13 +92,15 @@ pub(crate) fn forces(
             f: 1.0,
             jams: None,
             rounding,
+            free: support.beta.amax(),
         });
     }
     if let [hold] = holds {
         return single(support, *hold, mu[0]);
     }
-    let slips: Vec<Option<Vector2<f64>>> = holds.iter().map(Hold::direction).collect();
-    let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+    let slips: SmallVec<[Option<Vector2<f64>>; FEW]> = holds.iter().map(Hold::direction).collect();
+    let modes: SmallVec<[Mode; FEW]> =
+        slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
     let problem = support.problem(mu, &slips);
     let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Common)?;
     if !found.force.iter().all(|value| value.is_finite()) {
@@ -111,10 +119,11 @@ pub(crate) fn forces(
         f: found.f,
         jams: found.jams,
         rounding: support.least_force(),
+        free: support.beta.amax(),
     })
 }
 
-/// One contact: the runtime's own answer.
+/// A single contact: solved by the runtime.
 fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacking> {
     let (mode, slip) = match hold {
         Hold::Stick => (ContactMode::Stick, Vector2::zeros()),
@@ -131,16 +140,22 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
         f: answer.margins.f.map_or(1.0, |f| f / matrix.nn),
         jams: answer.margins.f.map(|_| 0),
         rounding: support.least_force(),
+        free: support.beta.amax(),
     })
 }
 
-/// Relative slack of the conditions that end a mode, so that rounding on an edge does not.
+/// Relative slack of the conditions that end a mode, so that rounding at the boundary does not end it.
 const SLACK: f64 = 2e-12;
 
-/// What must stay positive while the modes last: per contact lambda_n, and (mu lambda_n)^2 - lambda_tan^2 of
-/// one that sticks (else 1).
+/// An acceleration along a plane without friction below this share of the free ones is a rounding error.
+const UNHELD: f64 = 1e-9;
+
+/// The functions that are positive while the modes last: for each contact lambda_n, and for a sticking one
+/// (mu lambda_n)^2 - lambda_tan^2 (else 1). Without friction there is no force to compare: a contact that
+/// does not slip must not begin to, so its acceleration along the plane takes the place of the force
+/// (theory 17.11).
 pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 2]> {
-    // Of contacts that are not pressed all forces are rounding.
+    // The forces of contacts that are not pressed are rounding errors.
     let slack = (SLACK * forces.lambda.amax()).max(forces.rounding);
     holds
         .iter()
@@ -149,6 +164,11 @@ pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 
             let force = forces.of(i);
             let cone = match hold {
                 Hold::Slide(_) => 1.0,
+                Hold::Stick if mu[i] == 0.0 && holds.len() > 1 => {
+                    let along = ClosedContacts::three(&forces.acceleration, i).yz().norm();
+                    let part = along / forces.free.max(f64::MIN_POSITIVE);
+                    forces.lambda.amax().max(forces.rounding).powi(2) * (UNHELD - part)
+                }
                 Hold::Stick => {
                     let most = mu[i] * force.x;
                     let over = force.y * force.y + force.z * force.z;
@@ -160,7 +180,7 @@ pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 
         .collect()
 }
 
-/// Whether all conditions of the modes hold.
+/// Whether all conditions of the modes are satisfied.
 pub(crate) fn hold_good(forces: &Forces, holds: &[Hold], mu: &[f64]) -> bool {
     margins(forces, holds, mu).iter().flatten().all(|&margin| margin >= 0.0)
 }
@@ -171,9 +191,9 @@ mod tests {
 
     use super::*;
 
-    /// A foot in a plane that stands on its toe, with hardly a force at its heel: friction of both stays within
-    /// its cone wherever there are forces that do. Where the heel was given a thousandth of the toe's weight,
-    /// its friction was used up when that of the foot was not, and it seemed to slip.
+    /// A foot in a plane stands on its toe, with hardly any force at its heel: friction of both stays inside
+    /// its cone if there are such forces. When the heel was given a thousandth of the toe's weight, its
+    /// friction was exhausted earlier than that of the foot, and it seemed to slip.
     #[test]
     fn heel_and_toe_share_friction_within_their_cones() {
         let point = |x: f64, z: f64| [[0.0, 1.0, -x], [1.0, 0.0, z], [0.0, 0.0, 0.0]];

@@ -1,8 +1,9 @@
-//! What is given of a [`ContactLaw`] by options, part by part: what one leaves open another may say.
+//! The parts of a [`ContactLaw`] that options give; parts that one source leaves open can be taken from
+//! another.
 
 use crate::contact_law::{ContactLaw, Restitution, Sliding};
 
-/// Parts of a [`ContactLaw`]; what is not given is none.
+/// Parts of a [`ContactLaw`]; a part that is not given is `None`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenLaw {
     /// static coefficient of friction
@@ -24,7 +25,7 @@ impl GivenLaw {
     pub const PARTS: [&'static str; 6] =
         ["mu_static", "mu_impact", "sliding", "restitution", "rolling", "spinning"];
 
-    /// What is not given here is taken from another.
+    /// Takes the parts that are not given here from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -41,7 +42,7 @@ impl GivenLaw {
     ///
     /// # Errors
     ///
-    /// A sentence: there is no such part, or the text is none.
+    /// A sentence: there is no such part, or the text is not valid for it.
     pub fn set(&mut self, part: &str, text: &str) -> Result<(), String> {
         let number = || text.trim().parse::<f64>().map_err(|_| format!("{part} is `{text}`: give a number"));
         match part {
@@ -56,7 +57,7 @@ impl GivenLaw {
         Ok(())
     }
 
-    /// The parts that are given, by name and text.
+    /// The given parts, by name and text.
     pub fn parts(&self) -> Vec<(&'static str, String)> {
         let texts = [
             self.mu_static.map(|mu| mu.to_string()),
@@ -69,7 +70,7 @@ impl GivenLaw {
         Self::PARTS.into_iter().zip(texts).filter_map(|(part, text)| Some((part, text?))).collect()
     }
 
-    /// The law: what is not given is as the surface says.
+    /// The law; parts that are not given are those of the surface.
     pub fn law(self) -> ContactLaw {
         ContactLaw {
             mu_static: self.mu_static,
@@ -82,7 +83,7 @@ impl GivenLaw {
     }
 }
 
-/// A law, of which constant parts count as not given.
+/// The parts of a law; constant parts count as not given.
 impl From<ContactLaw> for GivenLaw {
     fn from(law: ContactLaw) -> Self {
         let ContactLaw { mu_static, mu_impact, sliding, restitution, rolling, spinning } = law;

@@ -1,10 +1,10 @@
 //! Impacts of several contacts at once, with friction: by Poisson's hypothesis where it is the law of all of them
 //! ([`crate::poisson_at_once`]), else by Moreau's law.
 //!
-//! Moreau's law: with v- and v+ before and after, the impulses p of all contacts obey v+ = v- + W p with the laws of contact
-//! that lasts in place of accelerations: each contact asks for v+_n >= -e v-_n with p_n >= 0, one of them with
-//! equality, and friction abs(p_tan) <= mu p_n, which opposes the slip that is left (docs/theory.md, section
-//! 17.13).
+//! Moreau's law: with the velocities v- before and v+ after, the impulses p of all contacts satisfy v+ = v- +
+//! W p with the laws of lasting contact for velocities in place of accelerations. Each contact requires
+//! v+_n >= -e v-_n and p_n >= 0, one of them with equality, and friction abs(p_tan) <= mu p_n, which opposes
+//! the remaining slip (docs/theory.md, section 17.13).
 
 use hodograph::{Law, Selection, State};
 use nalgebra::{DVector, Vector2};
@@ -20,28 +20,28 @@ use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
 use crate::{ErrorKind, Share, SimulationError};
 
-/// Halvings of the share of restitution that does not gain energy.
+/// Number of bisections for the part of restitution that does not increase the energy.
 const HALVINGS: usize = 40;
-/// A gain of energy below this, relative to the energies of the normal impulses, is rounding.
+/// An energy increase below this, relative to the energies of the normal impulses, counts as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The implicit step whose limit ends a jam, beside the time of the problem, and by how much more than its free
-/// accelerations such a step changes the velocities.
+/// The implicit time step whose limit ends a jam, relative to the time of the problem; and the factor by
+/// which such a step changes the velocities more than the free accelerations would.
 const STEP: f64 = 1e-7;
 const LARGE: f64 = 100.0;
-/// At the event of a jam the determinant of the sliding contacts is not yet zero ([`crate::forces::JAM`]): by this part
-/// friction is larger in the impact.
+/// At the event of a jam the determinant of the sliding contacts is not yet zero ([`crate::forces::JAM`]);
+/// friction is increased by this part in the impact.
 const MORE: f64 = 2e-5;
-/// The normal impulses may miss the cones by this part.
+/// The allowed relative violation of the cones by the impulses.
 const SHORT: f64 = 1e-9;
 
-/// The impulses of contacts that strike at once.
+/// The impulses of contacts that are struck at once.
 struct AtOnce {
     impulse: DVector<f64>,
     velocity: DVector<f64>,
     /// change of kinetic energy, J
     work: f64,
-    /// size of the terms of the work, J
+    /// sum of the magnitudes of the terms of the work, J
     scale: f64,
 }
 
@@ -54,10 +54,10 @@ impl AtOnce {
     }
 }
 
-/// What becomes of contacts that jam together.
+/// The outcome for contacts that jam together.
 pub(crate) enum Jam {
     Impact(Hit),
-    /// They go on in these modes.
+    /// They continue in these modes.
     Modes(Choice),
     Unsolved,
 }
@@ -65,12 +65,12 @@ pub(crate) enum Jam {
 /// The limit of implicit steps.
 enum Outcome {
     Impulses(AtOnce),
-    /// Their forces are finite.
+    /// The forces are finite.
     Modes(Solution),
 }
 
 impl Transition<'_> {
-    /// What becomes of contacts that jam together, though none of them would alone.
+    /// Determines the outcome for contacts that jam together, although none of them would jam alone.
     pub(crate) fn impact_of_a_jam(&self, contacts: &[usize], speeds: &[f64]) -> Result<Jam, SimulationError> {
         let state = State { speeds, ..self.here() };
         let support = ClosedContacts::new(self.mechanism, &state, contacts, true)
@@ -92,7 +92,7 @@ impl Transition<'_> {
         })
     }
 
-    /// Whether these modes are not those that the contacts have.
+    /// Whether these modes differ from those of the contacts.
     fn differs(&self, contacts: &[usize], modes: &[Mode]) -> bool {
         contacts.iter().zip(modes).any(|(&contact, mode)| {
             !matches!(
@@ -102,7 +102,7 @@ impl Transition<'_> {
         })
     }
 
-    /// The modes that an implicit step over this time leaves.
+    /// The modes after an implicit step over this time.
     fn choice_of(&self, contacts: &[usize], solution: &Solution, h: f64) -> Choice {
         let decision = |(&contact, mode): (&usize, &Mode)| match mode {
             Mode::Separate => Decision::Separate,
@@ -116,7 +116,7 @@ impl Transition<'_> {
         }
     }
 
-    /// The impact of these contacts at once; `faded` ones end without restitution.
+    /// The impact of these contacts at once; `faded` ones have no restitution.
     pub(crate) fn impact_at_once(
         &self,
         contacts: &[usize],
@@ -131,7 +131,7 @@ impl Transition<'_> {
                 *e = self.surface_in_impact(contact, *before)?.e;
             }
         }
-        // What each returns: by Poisson's hypothesis that depends on all.
+        // The restitution of each contact; by Poisson's hypothesis it depends on all of them.
         let mut rebound: Vec<f64> = restitution.iter().zip(&before).map(|(e, before)| e * before).collect();
         if self.by_poisson(contacts) && restitution.iter().any(|&e| e > 0.0) {
             let outcome = two_phases(&support, &self.mus_in_impacts(contacts), &restitution)
@@ -149,7 +149,7 @@ impl Transition<'_> {
         self.at_once(contacts, &support, speeds, &restitution, bounces)
     }
 
-    /// The impact of these contacts at once after which none approaches: without restitution.
+    /// The plastic impact of these contacts at once, after which none approaches.
     pub(crate) fn plastic_impact(&self, contacts: &[usize], speeds: &[f64]) -> Result<Hit, SimulationError> {
         let support = self.struck_support(contacts, speeds)?;
         self.at_once(contacts, &support, speeds, &vec![0.0; contacts.len()], Vec::new())
@@ -177,8 +177,8 @@ impl Transition<'_> {
         };
         let mut outcome = solve(1.0)?;
         if outcome.work > ROUNDING * outcome.scale {
-            // Both laws may gain energy with friction and unlike e: as much of the restitution is taken as gains
-            // none. Without restitution none is gained.
+            // Both laws may increase the energy with friction and different e; then the greatest part of the
+            // restitution that does not is taken. Without restitution the energy never increases.
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
@@ -242,13 +242,14 @@ impl Transition<'_> {
     }
 }
 
-/// The impulses without restitution that end a jam: the limit of the implicit steps v+ = v- + W p + h beta as h falls to
-/// zero, with friction against the slip that is left; or the modes of these steps, where they have finite forces.
+/// The impulses without restitution that end a jam: the limit of the implicit steps v+ = v- + W p + h beta
+/// for h -> 0, with friction against the remaining slip; or the modes of these steps if their forces are
+/// finite.
 fn impulses_of_a_jam(support: &ClosedContacts, mu: &[f64], h: f64) -> Option<Outcome> {
     let k = support.len();
     let mut velocity = support.velocity.clone();
     for i in 0..k {
-        // Closed contacts neither part nor approach.
+        // Closed contacts neither separate nor approach.
         velocity[3 * i] = 0.0;
     }
     let none: Vec<Option<Vector2<f64>>> = vec![None; k];

@@ -1,5 +1,6 @@
 //! Impacts without collision: a sliding contact that no finite force can hold (Painleve's paradox).
 
+use hodograph::generated::hypot;
 use hodograph::{
     CollisionError, CollisionOutcome, ComponentKind, ContactState, ImpactError, ReducedMatrix, State, Surface,
 };
@@ -15,8 +16,9 @@ use crate::transition::Transition;
 use crate::{CollisionRecord, ErrorKind, EventKind, SimulationError};
 
 impl Transition<'_> {
-    /// A sliding contact that no finite force holds suffers an impact with zero speed of approach. Then contacts
-    /// that it presses together strike, and the modes of all that touch are decided anew.
+    /// A sliding contact that no finite force can hold suffers an impact with zero speed of approach.
+    /// Contacts that it presses together are struck next, and the modes of all closed contacts are decided
+    /// again.
     pub(crate) fn impact_without_collision(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         self.front.crowd += 1;
@@ -32,7 +34,7 @@ impl Transition<'_> {
             before = turned;
         }
         let (outcome, after) = match self.low_without_collision(contact, &before) {
-            // Alone it would not jam.
+            // It would not jam alone.
             Err(
                 error @ SimulationError {
                     kind: ErrorKind::Collision(CollisionError::Impact(ImpactError::NoImpact { .. })),
@@ -54,9 +56,9 @@ impl Transition<'_> {
         }
     }
 
-    /// The speeds with the slip of the only closed contact turned so far that it jams. Slip that turns towards a jam
-    /// meets it with f like the square root of the time left: the last turn happens in less time than a step can
-    /// have. `None` where it has jammed already, or is not about to.
+    /// The speeds with the slip of the only closed contact turned so that it jams. While slip turns towards a
+    /// jam, f decreases like the square root of the remaining time, so that the last turn takes less time
+    /// than any step. `None` if it has jammed already, or is not about to.
     fn turned_into_jam(&self, contact: usize, speeds: &[f64]) -> Result<Option<Vec<f64>>, SimulationError> {
         let closed = self.front.phases.iter().filter(|phase| phase.is_closed()).count();
         if closed != 1 || !matches!(self.front.phases[contact], Phase::Slide(_)) {
@@ -74,7 +76,7 @@ impl Transition<'_> {
         Ok(Some(speeds.iter().zip(change.iter()).map(|(speed, change)| speed + change).collect()))
     }
 
-    /// The only closed contact, if its slip turns into a jam within no time.
+    /// The only closed contact, if its slip turns into a jam within a negligible time.
     pub(crate) fn turns_into_jam(&self) -> Result<Option<usize>, SimulationError> {
         let Some(contact) = self.front.phases.iter().position(Phase::is_closed) else { return Ok(None) };
         Ok(self.turned_into_jam(contact, self.here().speeds)?.map(|_| contact))
@@ -90,7 +92,7 @@ impl Transition<'_> {
         let closed: Vec<usize> = (0..was.len()).filter(|&contact| was[contact].is_closed()).collect();
         let hit = match self.impact_of_a_jam(&closed, before)? {
             Jam::Impact(hit) => hit,
-            // Finite forces exist in other modes.
+            // There are finite forces in other modes.
             Jam::Modes(choice) => {
                 self.apply(&closed, was, &choice);
                 return self.crowded(self.front.t);
@@ -107,8 +109,8 @@ impl Transition<'_> {
         }
     }
 
-    /// The outcome of [`Self::without_collision`]; without restitution where the contact is pressed down and would rise
-    /// by less than the tolerance: the rule of chatter (docs/theory.md, section 17.7).
+    /// The outcome of [`Self::without_collision`]; without restitution if the contact is pressed down and
+    /// would rise by less than the tolerance: the rule of chatter (docs/theory.md, section 17.7).
     fn low_without_collision(
         &self,
         contact: usize,
@@ -122,7 +124,8 @@ impl Transition<'_> {
         Ok((outcome, after))
     }
 
-    /// The outcome along n, t, s with t along the slip, and the speeds after; `faded` is without restitution.
+    /// The outcome along n, t, s with t along the slip, and the speeds after it; `faded` means without
+    /// restitution.
     fn without_collision(
         &self,
         contact: usize,
@@ -134,8 +137,8 @@ impl Transition<'_> {
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
         let here = self.mechanism.contact_state(contact, &state).map_err(fault)?;
-        let speed = here.velocity.y.hypot(here.velocity.z);
-        // Friction is that of the slip that jams, not that of impacts.
+        let speed = hypot(here.velocity.y, here.velocity.z);
+        // Friction is that of the jamming slip, not that of impacts.
         let surface =
             Surface { mu: self.friction(contact, speed)?.slips, ..self.surface_in_impact(contact, 0.0)? };
         let surface = jammed(&here, if faded { Surface { e: 0.0, ..surface } } else { surface });
@@ -148,8 +151,8 @@ impl Transition<'_> {
     }
 }
 
-/// Slip turned to where f = m_nn - mu b.d is as small and negative as [`jammed`] makes it; `None` where that is no
-/// small turn, or none at all.
+/// Slip turned so that f = m_nn - mu b.d is as small and negative as [`jammed`] makes it; `None` if that is
+/// not a small turn, or impossible.
 fn slip_that_jams(reduced: &ReducedMatrix<f64>, slip: Vector2<f64>, mu: f64) -> Option<Vector2<f64>> {
     let b = Vector2::new(reduced.nt, reduced.ns);
     let (least, speed) = (JAM * reduced.nn, slip.norm());
@@ -161,25 +164,25 @@ fn slip_that_jams(reduced: &ReducedMatrix<f64>, slip: Vector2<f64>, mu: f64) -> 
     if cos >= 1.0 {
         return None;
     }
-    // On the side of b on which the slip is.
+    // On the same side of b as the slip.
     let towards = b / b.norm();
     let across = Vector2::new(-towards.y, towards.x);
     let side = if across.dot(&slip) < 0.0 { -1.0 } else { 1.0 };
     Some(speed * (towards * cos + across * (side * (1.0 - cos * cos).sqrt())))
 }
 
-/// A contact whose slip turns into a jam within no time has f / m_nn below this.
+/// A contact whose slip turns into a jam within a negligible time has f / m_nn below this.
 const TURNS: f64 = 1e-2;
 
-/// The surface of an impact without collision: where f = m_nn - mu m_nt, t along the slip, is not yet zero,
-/// but so small that the contact jams, with the friction that makes it as small and negative. It is larger by
-/// less than `2 JAM` times m_nn / m_nt.
+/// The surface of an impact without collision, where f = m_nn - mu m_nt with t along the slip is not yet
+/// zero, but so small that the contact jams: its friction is increased so that f becomes as small and
+/// negative. The increase is less than `2 JAM` times m_nn / m_nt.
 fn jammed(here: &ContactState<f64>, surface: Surface<f64>) -> Surface<f64> {
     let (reduced, slip) = (&here.reduced, here.velocity.yz());
     let along_slip = Vector2::new(reduced.nt, reduced.ns).dot(&slip) / slip.norm();
     let f = reduced.nn - surface.mu * along_slip;
     let least = JAM * reduced.nn;
-    // the event is found where f = least, up to the rounding of its search
+    // the event is located where f = least, up to rounding
     if f >= 0.0 && f <= 1.5 * least {
         Surface { mu: (reduced.nn + least) / along_slip, ..surface }
     } else {

@@ -1,7 +1,7 @@
-//! Impacts: which contacts strike at a time, in what order, and what follows.
+//! Impacts: which contacts are struck at a time, in what order, and the consequences.
 //!
-//! Contacts that approach at one time strike at once; those that these impulses press together strike next,
-//! until nothing approaches (docs/theory.md, section 17.13).
+//! Contacts that approach at one time are struck at once; those that these impulses press together are struck
+//! next, until none approaches (docs/theory.md, section 17.13).
 
 use hodograph::{ComponentKind, State};
 use nalgebra::{DMatrix, DVector};
@@ -15,27 +15,27 @@ use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
 use crate::{CollisionRecord, ErrorKind, EventKind, ImpactsAtOnce, SimulationError, SimultaneousCollision};
 
-/// Touching contacts approach where their normal velocity, relative to the first approach, is below minus
-/// this.
+/// A touching contact approaches if its normal velocity, relative to the first approach, is below minus this.
 const APPROACH: f64 = 1e-12;
-/// Normal velocities below this, relative to the greatest that the motion has energy for, are rounding.
+/// Normal velocities below this part of the greatest that the energy of the motion allows are rounding
+/// errors.
 const ROUNDING: f64 = 1e-15;
-/// What rounding and projections leave of a normal velocity, relative to its own terms.
+/// The part of the terms of a normal velocity that rounding and projections leave.
 const OWN: f64 = 1e-13;
-/// Approaches slower than this, relative to the first, end without restitution.
+/// Approaches slower than this, relative to the first one, have no restitution.
 const FADED: f64 = 1e-9;
-/// Most impacts at one time.
+/// Largest number of impacts at one time.
 pub(crate) const MOST: usize = 3000;
-/// After so many impacts per touching contact, one plastic impact of all contacts ends the sequence: impacts
-/// one after the other approach it linearly. The second number is for contacts without restitution.
+/// After this many impacts per touching contact, one plastic impact of all contacts ends the sequence, to
+/// which single impacts converge linearly. The second number is for contacts without restitution.
 const PATIENCE: [usize; 2] = [24, 2];
-/// A gap closes now if it does within this part of the time of the problem.
+/// A gap closes now if it closes within this part of the time of the problem.
 const NOW: f64 = 5e-11;
-/// All orders are compared of at most so many contacts.
+/// All orders of impacts are compared for at most this many contacts.
 const COMPARED: usize = 4;
 
 impl Transition<'_> {
-    /// A gap has closed: its contact strikes, with all others that approach now.
+    /// Handles a closed gap: its contact is struck together with all others that approach now.
     pub(crate) fn strike(&mut self, first: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         let touching = self.touching(Some(first))?;
@@ -68,7 +68,7 @@ impl Transition<'_> {
         self.part_or_stay(&touching, &last, &was)
     }
 
-    /// Takes an impact: speeds, energies, bounces that end, and the event.
+    /// Applies an impact: speeds, energies, bounces that end, and the event.
     pub(crate) fn take_impact(&mut self, hit: Hit, spread: Option<f64>) {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         self.front.y[n..n + hit.after.len()].copy_from_slice(&hit.after);
@@ -92,7 +92,7 @@ impl Transition<'_> {
         }
     }
 
-    /// After impacts: what parts is open, what stays is decided.
+    /// After impacts: separating contacts are open, and the modes of the others are decided.
     pub(crate) fn part_or_stay(
         &mut self,
         touching: &[usize],
@@ -132,24 +132,25 @@ impl Transition<'_> {
         self.look_for_rest()
     }
 
-    /// The slowest normal velocity of a contact that is more than rounding, m/s: relative to the one that all
-    /// kinetic energy so far would give it. A body at rest beside others that move has only rounding.
+    /// The smallest normal velocity of a contact that is more than rounding, m/s, relative to the one that
+    /// all kinetic energy so far would give it. A body at rest beside moving ones has only rounding errors.
     fn slowest(&self, support: &ClosedContacts, place: usize) -> f64 {
         self.slowest_along(support, 3 * place)
     }
 
-    /// The same of a component of a velocity.
+    /// The same for a component of a velocity.
     pub(crate) fn slowest_along(&self, support: &ClosedContacts, row: usize) -> f64 {
         ROUNDING * (2.0 * self.front.greatest * support.coupled[(row, row)]).sqrt()
     }
 
-    /// What may count as no normal velocity, where it would be less than `rounding`, which is told by all
-    /// velocities: of that no more than can be seen, or than rounding makes of the terms of the normal velocity
-    /// itself. A body that is fast along a floor still strikes it.
+    /// The normal velocity up to which a contact counts as at rest: `rounding`, the bound from all velocities,
+    /// but at most the greater of the smallest velocity that matters and the rounding error of the terms of
+    /// the normal velocity itself. So a body that moves fast along a floor can still collide with it.
     ///
     /// # Errors
     ///
-    /// [`ErrorKind::Rounding`] where a normal velocity that would be seen is less than the rounding of its own terms.
+    /// [`ErrorKind::Rounding`] if a normal velocity that matters is smaller than the rounding error of its
+    /// own terms.
     pub(crate) fn unseen(
         &self,
         support: &ClosedContacts,
@@ -205,7 +206,7 @@ impl Transition<'_> {
         Ok(touching)
     }
 
-    /// The touching contacts that approach, with their speeds of approach, relative to a first one.
+    /// The touching contacts that approach, with their speeds of approach relative to the first one.
     pub(crate) fn approaching(
         &self,
         touching: &[usize],
@@ -232,7 +233,7 @@ impl Transition<'_> {
         Ok(list)
     }
 
-    /// The touching contacts that approach, and those whose velocities their impulses change.
+    /// The touching contacts that approach, and those whose velocities are changed by their impulses.
     fn involved(
         &self,
         touching: &[usize],
@@ -247,8 +248,8 @@ impl Transition<'_> {
         Ok(support.coupled_with(&struck, Along::All).into_iter().map(|place| touching[place]).collect())
     }
 
-    /// The impacts at a time until nothing approaches. With an `order` of preference one contact strikes after
-    /// the other.
+    /// The impacts at one time, until no contact approaches. With an `order` of preference the contacts are
+    /// struck one after the other.
     fn sequence(
         &self,
         touching: &[usize],
@@ -283,8 +284,9 @@ impl Transition<'_> {
             let hit = if hits.len() >= patience && touching.len() > 1 {
                 let involved = self.involved(touching, &approaching, &speeds)?;
                 match self.plastic_impact(&involved, &speeds) {
-                    // It is proven that nothing approaches any more, beside the slip that is left. The bound of
-                    // an approach is relative to the first one, and may be less than that proof.
+                    // It is proven that no contact approaches, up to the remaining slip. The bound of an
+                    // approach is relative to the first one, and may be smaller than the accuracy of that
+                    // proof.
                     Ok(last) => {
                         hits.push(last);
                         return Ok(hits);
@@ -295,7 +297,8 @@ impl Transition<'_> {
                 self.hit(&next, &speeds, faded)
             };
             let hit = match hit {
-                // Impulses of several at once that cannot be proven are not taken: the fastest strikes alone.
+                // Simultaneous impulses without a certificate are not accepted; then the fastest contact is
+                // struck alone.
                 Err(SimulationError { kind: ErrorKind::NoForces(_), .. }) => {
                     let fastest = approaching.iter().max_by(|a, b| a.1.total_cmp(&b.1));
                     let alone = fastest.map_or(next[0], |(contact, _)| *contact);
@@ -309,8 +312,9 @@ impl Transition<'_> {
         Err(self.error(None, self.without_end(MOST)))
     }
 
-    /// By how much the outcome depends on the order in which contacts struck together strike one after the
-    /// other: the greatest kinetic energy of the difference to the outcome taken, J. Only on request.
+    /// The dependence of the outcome on the order in which contacts struck at the same time are struck
+    /// successively: the greatest kinetic energy of the difference from the accepted outcome, J. Computed
+    /// only on request.
     fn spread(
         &self,
         touching: &[usize],
@@ -347,7 +351,7 @@ impl Transition<'_> {
     }
 }
 
-/// All orders of a list.
+/// All permutations of a list.
 fn permutations(list: &[usize]) -> Vec<Vec<usize>> {
     if list.len() <= 1 {
         return vec![list.to_vec()];

@@ -1,11 +1,11 @@
 //! Simulates the motion of mechanisms with impacts and lasting contact.
 //!
-//! [`Simulation`] follows a motion from event to event. Between events it integrates the equations of motion
+//! [`Simulation`] advances a motion from event to event. Between events it integrates the equations of motion
 //! with the forces of the closed contacts, which follow exactly from their modes (stick, slide). Impacts are
-//! solved exactly. There is no penalty stiffness, and a sticking contact does not creep; where rigid bodies
-//! do not determine an outcome, the event says so. See `docs/contact.md`.
+//! solved exactly. There is no penalty stiffness, and a sticking contact does not creep; if rigid bodies do
+//! not determine an outcome, the event says so. See `docs/contact.md`.
 //!
-//! It works for everything that implements [`hodograph::Contacts`]: generated modules, and models that the
+//! It works with every type that implements [`hodograph::Contacts`]: generated modules, and models that the
 //! package `hodograph-interpreter` reads at run time.
 //!
 //! ```
@@ -94,7 +94,7 @@ pub use crate::{
     event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
     exchange::{Indicator, IndicatorKind},
     given_law::GivenLaw,
-    many::{Batch, Case, Outcome, Watch, digest, simulate_many},
+    many::{Batch, Case, Outcome, StopAt, Watch, digest, simulate_many},
     options::{EventFunction, ImpactsAtOnce, Options},
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},

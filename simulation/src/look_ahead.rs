@@ -1,9 +1,9 @@
-//! Decides modes by the motion just after an instant.
+//! Decides modes by the motion just after an event.
 //!
-//! Where friction is used up, or a normal force vanishes, the accelerations at the contacts are zero: at that
-//! instant the modes before and after fit both. A mode is right if its conditions hold for some time after the
-//! instant (docs/theory.md, section 17.11). So the motion is carried on a little in the modes that end; the
-//! forces that obey the laws there tell the modes that follow, of all contacts at once.
+//! If friction is exhausted, or a normal force vanishes, the accelerations at the contacts are zero: at that
+//! time both the modes before and those after are admissible. A mode is right if its conditions hold for some
+//! time after the event (docs/theory.md, section 17.11). So the motion is continued for a short time in the
+//! ending modes; the forces that obey the laws there determine the following modes of all contacts together.
 
 use hodograph::State;
 use nalgebra::Vector2;
@@ -17,31 +17,31 @@ use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{EventKind, SimulationError};
 
-/// The first time ahead, beside the last step, and how much longer each next one is.
+/// The first time ahead, relative to the last step, and the factor from one time to the next.
 const FIRST: f64 = 1e-7;
 const LONGER: f64 = 8.0;
-/// The last step counts as no shorter and no longer than this, beside the time of the problem.
+/// The bounds of the last step for this purpose, relative to the time of the problem.
 const LEAST: f64 = 5e-6;
 const MOST: f64 = 5e-2;
-/// Times ahead that are tried.
+/// Number of times ahead that are tried.
 const TRIALS: usize = 8;
-/// A condition that has changed by so much, relative to the forces, has changed by more than rounding.
+/// A condition that has changed by this part of the forces has changed by more than rounding.
 const CLEAR: f64 = 1e-10;
-/// After so many events without progress the modes that were decided are confirmed.
+/// After this many events without progress, decided modes are confirmed.
 const DOUBT: usize = 4;
-/// Modes that are tried before those chosen last are taken.
+/// Number of modes that are tried before the last ones are accepted.
 const ROUNDS: usize = 6;
 
-/// What the motion ahead says of the modes.
+/// The result of the motion ahead.
 enum Ahead {
-    /// They go on.
+    /// The modes continue.
     Fit,
-    /// They end here: these follow.
+    /// The modes end here; the following ones.
     End(Choice),
 }
 
 impl Transition<'_> {
-    /// The modes of these contacts have ended, or seem to: decides what follows.
+    /// Decides the modes that follow those of these contacts, which have ended or seem to have.
     pub(crate) fn look_ahead(&mut self, contacts: &[usize]) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         let closed = self.closed();
@@ -57,7 +57,7 @@ impl Transition<'_> {
                 break;
             }
             return match self.chosen_at(contacts, &step)? {
-                // Nothing changes: they miss their conditions by what errors of the state may do.
+                // Nothing changes: the conditions are violated by no more than the errors of the state.
                 Ok(choice) if self.go_on(contacts, &choice) => break,
                 Ok(choice) => {
                     self.begin_from_rest(contacts, &choice)?;
@@ -67,14 +67,14 @@ impl Transition<'_> {
                 Err(lacking) => self.without_forces(contacts, lacking),
             };
         }
-        // The conditions hold ahead, or are as nearly used up there as here: the modes go on.
+        // The conditions hold ahead, or are violated as little as here: the modes continue.
         match last {
             Some(mut step) => self.commit(&mut step),
             None => self.decide(contacts, &was),
         }
     }
 
-    /// Confirms modes that were just decided where events crowd: they must hold a little later, too.
+    /// Confirms modes that were just decided where events are frequent: they must hold a little later, too.
     pub(crate) fn confirm(&mut self, contacts: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
         if contacts.len() < 2 || self.front.crowd < DOUBT {
             return Ok(());
@@ -93,7 +93,7 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// Whether the modes as they are still fit a little later, and those that do.
+    /// Whether the present modes are still admissible a little later, and the admissible ones.
     fn modes_ahead(&self, contacts: &[usize], round: usize) -> Result<Ahead, SimulationError> {
         let closed = self.closed();
         let Some(step) = self.part(&closed, self.ahead(round / 2)) else { return Ok(Ahead::Fit) };
@@ -104,7 +104,7 @@ impl Transition<'_> {
         Ok(self.chosen_at(contacts, &step)?.map_or(Ahead::Fit, Ahead::End))
     }
 
-    /// Slip that begins does so from none: what rounding has left of the slip before would have a direction.
+    /// New slip begins from zero, since a rounding error of the previous slip would have a direction.
     fn begin_from_rest(&mut self, contacts: &[usize], choice: &Choice) -> Result<(), SimulationError> {
         for (&contact, decision) in contacts.iter().zip(&choice.decisions) {
             if matches!(decision, Decision::Slide(_, true) | Decision::Stick) {
@@ -114,7 +114,7 @@ impl Transition<'_> {
         self.correct()
     }
 
-    /// Whether the contacts that have opened do not approach again.
+    /// Whether contacts that have opened do not approach again.
     fn opened(&self, contacts: &[usize], step: &Step) -> Result<bool, SimulationError> {
         for &contact in contacts {
             if !self.front.phases[contact].is_closed() && self.gap_at(step, contact)?.1 < 0.0 {
@@ -124,7 +124,7 @@ impl Transition<'_> {
         Ok(true)
     }
 
-    /// A time ahead: longer the more events there were without progress.
+    /// The time ahead: it increases with the number of events without progress.
     fn ahead(&self, trial: usize) -> f64 {
         let scale = self.front.next.clamp(LEAST * self.front.scales.time, MOST * self.front.scales.time);
         let crowd = (self.front.crowd / 8).min(4);
@@ -147,7 +147,7 @@ impl Transition<'_> {
         Some((!forward || violated || !near, fits))
     }
 
-    /// The modes that the state at the end of a step asks for.
+    /// The modes that the state at the end of a step requires.
     fn chosen_at(&self, contacts: &[usize], step: &Step) -> Result<Result<Choice, Lacking>, SimulationError> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&step.end);
@@ -161,7 +161,7 @@ impl Transition<'_> {
             .iter()
             .enumerate()
             .map(|(i, &contact)| match self.front.phases[contact] {
-                // Slip that began here against its direction is none.
+                // Slip that began here against its direction counts as zero.
                 Phase::Slide(began) => {
                     let slip = support.slip(i);
                     let size = support.velocity_size(i, u).max(support.velocity_size(i, &self.front.scale));
@@ -176,7 +176,7 @@ impl Transition<'_> {
         Ok(choose(&support, &slips, &friction, &self.forces_before(contacts)))
     }
 
-    /// Whether these decisions are the modes as they are.
+    /// Whether these decisions are the present modes.
     fn go_on(&self, contacts: &[usize], choice: &Choice) -> bool {
         contacts.iter().zip(&choice.decisions).all(|(&contact, decision)| {
             matches!(
@@ -186,8 +186,8 @@ impl Transition<'_> {
         })
     }
 
-    /// The contacts whose directions of slip follow from the state, and these directions at the end of a step: those with
-    /// which the conditions of the modes are told.
+    /// The contacts whose directions of slip follow from the state, and these directions at the end of a
+    /// step, with which the conditions of the modes are evaluated.
     fn settled_directions(&self, step: &Step) -> Vec<(usize, Vector2<f64>)> {
         let closed = self.closed();
         if closed.iter().all(Closed::has_own_direction) {
@@ -198,7 +198,7 @@ impl Transition<'_> {
         settled.filter_map(|(contact, hold)| Some((contact.contact, hold.direction()?))).collect()
     }
 
-    /// Takes back what was said of the modes of contacts at this instant.
+    /// Removes the events of the modes of these contacts at this time.
     fn forget_mode_events(&mut self, contacts: &[usize]) {
         let now = self.front.t;
         self.events.retain(|event| {
@@ -220,7 +220,7 @@ impl Transition<'_> {
     }
 }
 
-/// Whether slip that began goes the way it began.
+/// Whether slip that began goes in the direction in which it began.
 fn slips_forward(closed: &[Closed], evaluation: &Evaluation) -> bool {
     closed
         .iter()

@@ -1,12 +1,11 @@
-//! Solves an impact of several contacts without friction that are struck together, after Liu, Zhao and
-//! Brogliato (2008).
+//! Solves a simultaneous impact of several contacts without friction after Liu, Zhao and Brogliato (2008).
 //!
-//! Each contact is a spring of given stiffness that is so stiff that nothing moves while it acts: its
-//! compression c_i changes by c_i' = -v_i and its force k_i c_i changes the normal velocities by v' = W_nn (k
-//! c). For the energies E_i = k_i c_i^2 / 2 and the impulses I_i this is the distributing law dI_i / dI_j =
-//! (k_i / k_j)^(1/2) (E_i / E_j)^(1/2), that of springs with a linear law (eta = 1). Only the ratios of the
-//! k_i matter. While a contact expands it loses energy: c_i' = -v_i / e_i^2, which is the energetic
-//! coefficient of restitution (Stronge) of that contact alone.
+//! Each contact is a spring of given stiffness, so stiff that nothing moves during the impact: its
+//! compression c_i changes by c_i' = -v_i, and its force k_i c_i changes the normal velocities by v' = W_nn
+//! (k c). For the energies E_i = k_i c_i^2 / 2 and the impulses I_i this is the distributing law dI_i / dI_j
+//! = (k_i / k_j)^(1/2) (E_i / E_j)^(1/2) of linear springs (eta = 1). Only the ratios of the k_i matter. An
+//! expanding contact loses energy: c_i' = -v_i / e_i^2, which is the energetic coefficient of restitution
+//! (Stronge) of that contact alone.
 //!
 //! While every contact keeps compressing, expanding or not touching, x_i = c_i (k_i / d_i)^(1/2), d_i = 1 or
 //! 1 / e_i^2, obeys x'' = -S x with S symmetric: its eigenvectors give the motion in closed form, and only
@@ -14,7 +13,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// What the contacts do to each other.
+/// The effect of the contacts on each other.
 #[derive(Clone, Debug)]
 pub(crate) struct Outcome {
     /// normal impulses, N s
@@ -30,17 +29,17 @@ pub(crate) struct Outcome {
 pub(crate) enum Fault {
     /// This contact has no normal mobility.
     Immobile(usize),
-    /// The work of the calculation is bounded, and the bound is reached.
+    /// The work of the computation reached its bound.
     TooLong,
 }
 
-/// Steps at most: with stiffnesses in a ratio of 1e6 some 1e5 are needed.
+/// Largest number of steps: for stiffnesses in a ratio of 1e6 some 1e5 are needed.
 const STEPS: usize = 2_000_000;
-/// Changes of contacts at most.
+/// Largest number of changes of contacts.
 const CHANGES: usize = 20_000;
-/// A step, in the shortest period over two pi.
+/// A step, relative to the shortest period divided by two pi.
 const STEP: f64 = 0.05;
-/// Normal velocities below this, relative to the fastest, are none.
+/// Normal velocities below this part of the fastest count as zero.
 const NONE: f64 = 1e-13;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,14 +59,14 @@ struct Impact<'a> {
     none: f64,
 }
 
-/// The state a time after a change, as far as it is needed to find the next.
+/// The state at a time after a change, as far as it is needed to find the next one.
 struct Moment {
     compression: DVector<f64>,
     velocity: DVector<f64>,
     impulse: DVector<f64>,
 }
 
-/// The motion while no contact changes, by eigenvectors.
+/// The motion between two changes, by eigenvectors.
 struct Piece {
     active: Vec<usize>,
     /// k_i d_i and its root
@@ -130,7 +129,7 @@ impl Impact<'_> {
         }
     }
 
-    /// Contacts that approach begin to compress.
+    /// Approaching contacts begin to compress.
     fn close(&mut self) {
         for i in 0..self.phases.len() {
             if self.phases[i] == Phase::Open && self.velocity[i] < -self.none {
@@ -174,7 +173,7 @@ impl Impact<'_> {
         Piece { active, scale, vectors: eigen.eigenvectors, rates, place, speed, fastest }
     }
 
-    /// The state a time after the piece began.
+    /// The state at a time after the piece began.
     fn at(&self, piece: &Piece, time: f64) -> Moment {
         let m = piece.active.len();
         let (mut x, mut y, mut sum) = (DVector::zeros(m), DVector::zeros(m), DVector::zeros(m));
@@ -209,7 +208,7 @@ impl Impact<'_> {
         Moment { compression, velocity, impulse }
     }
 
-    /// What must stay positive for a contact to keep its phase, and its rate.
+    /// The functions that are positive while the contacts keep their phases, and their rates.
     fn margins(&self, moment: &Moment) -> (Vec<f64>, Vec<f64>) {
         let force = DVector::from_fn(self.phases.len(), |i, _| self.stiffness[i] * moment.compression[i]);
         let rate = self.coupled * force;
@@ -221,12 +220,12 @@ impl Impact<'_> {
         pairs.unzip()
     }
 
-    /// Whether a contact has changed by then.
+    /// Whether a contact has changed by this time.
     fn changed(&self, i: usize, margin: f64, moment: &Moment) -> bool {
         margin < 0.0 || (self.phases[i] == Phase::Expand && moment.velocity[i] < -self.none)
     }
 
-    /// Goes on to the first change: the state there, and the contact.
+    /// Advances to the first change; returns the state there, and the contact.
     fn follow(&self, piece: &Piece, steps: &mut usize) -> Result<(Moment, usize), Fault> {
         let step = STEP / piece.fastest;
         let mut start = 0.0;
@@ -245,7 +244,7 @@ impl Impact<'_> {
                 if self.changed(i, next[i], &there) {
                     until = Some(end);
                 } else if rates[i] < 0.0 && next_rates[i] > 0.0 && margins[i] > 0.0 {
-                    // It may have dipped below zero in between: at its least.
+                    // It may have been negative in between: check its minimum.
                     let least = bisect(start, end, |t| self.margins(&self.at(piece, t)).1[i] > 0.0);
                     let lowest = self.at(piece, least);
                     until = self.changed(i, self.margins(&lowest).0[i], &lowest).then_some(least);
@@ -267,7 +266,7 @@ impl Impact<'_> {
     }
 }
 
-/// The first time at which something holds that does not hold at the start and holds at the end.
+/// The first time at which a condition holds that does not hold at the start and holds at the end.
 fn bisect(start: f64, end: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (start, end);
     for _ in 0..100 {
@@ -295,7 +294,7 @@ mod tests {
         })
     }
 
-    /// Speeds of the balls after: the first comes with speed 1.
+    /// Speeds of the balls after the impact; the first ball arrives with speed 1.
     fn after(masses: &[f64], stiffness: &[f64], restitution: &[f64]) -> (Vec<f64>, Outcome) {
         let k = masses.len() - 1;
         let mut velocity = DVector::zeros(k);
@@ -314,7 +313,7 @@ mod tests {
         masses.iter().zip(speeds).map(|(m, v)| 0.5 * m * v * v).sum()
     }
 
-    /// The same impact on springs, by small steps of Runge and Kutta's method.
+    /// The same impact with springs, by small Runge-Kutta steps.
     fn on_springs(w: &DMatrix<f64>, v: &DVector<f64>, k: &[f64], e: &[f64], dt: f64) -> DVector<f64> {
         let m = v.len();
         let rates = |c: &DVector<f64>, v: &DVector<f64>| {
@@ -343,7 +342,7 @@ mod tests {
     }
 
     /// Three equal balls, two equal springs: c1, c2 = sin(t) / 2 +- sin(3^(1/2) t) / (2 3^(1/2)) until the
-    /// first two part; then the last two swing with the rate 2^(1/2) alone.
+    /// first two separate; then the last two oscillate with the angular frequency 2^(1/2).
     #[test]
     fn three_equal_balls_have_the_closed_answer() {
         let (mut low, mut high) = (1.5_f64, 3.0_f64);
@@ -357,7 +356,7 @@ mod tests {
         let first = -0.5 * (t.cos() + (root * t).cos());
         let second = -0.5 * (t.cos() - (root * t).cos());
         let squeezed = 0.5 * (t.sin() - (root * t).sin() / root);
-        // Then c'' = -2 c: the speed of parting is that of the energy.
+        // Then c'' = -2 c: the speed of separation follows from the energy.
         let part = (second * second + 2.0 * squeezed * squeezed).sqrt();
         // v1' = -k c2 / m while v2' = 2 k c2 / m.
         let left = first - 0.5 * (part - second);
@@ -380,7 +379,7 @@ mod tests {
             velocity[0] = -1.0;
             let stepped = on_springs(&balls(&masses), &velocity, &stiffness, &restitution, 2e-4);
             assert!((&outcome.velocities - &stepped).amax() < 2e-3, "{} {stepped}", outcome.velocities);
-            // The works are all of the energy that is lost, momentum stays.
+            // The works add up to the lost energy, and momentum is conserved.
             let lost = kinetic(&masses, &speeds) - 0.5 * masses[0];
             assert!((lost - outcome.works.iter().sum::<f64>()).abs() < 1e-12, "{lost} {:?}", outcome.works);
             assert!(lost <= 0.0 && outcome.works.iter().all(|work| *work <= 1e-12), "{:?}", outcome.works);
@@ -391,7 +390,8 @@ mod tests {
 
     #[test]
     fn a_stiff_first_contact_answers_before_the_second() {
-        // One after the other: the last ball takes all. The error falls with the root of the ratio.
+        // Successive impacts: the last ball takes all of the speed. The error decreases with the root of the
+        // ratio.
         let mut before = 1.0;
         for ratio in [1e2, 1e4, 1e6] {
             let (speeds, _) = after(&[1.0; 3], &[ratio, 1.0], &[1.0; 2]);
@@ -400,7 +400,7 @@ mod tests {
             before = error;
         }
         assert!(before < 5e-3, "{before}");
-        // A stiff second contact: the last two move as one, and only share their speed in the end.
+        // A stiff second contact: the last two move as one body, and share their speed only at the end.
         let (speeds, _) = after(&[1.0; 3], &[1.0, 1e6], &[1.0; 2]);
         assert!((speeds[0] + 1.0 / 3.0).abs() < 1e-3, "{speeds:?}");
         assert!((speeds[1] + speeds[2] - 4.0 / 3.0).abs() < 1e-3, "{speeds:?}");
@@ -439,7 +439,7 @@ mod tests {
         let none = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);
         let answer = solve(&none, &DVector::from_element(2, -1.0), &[1.0; 2], &[1.0; 2]);
         assert_eq!(answer.unwrap_err(), Fault::Immobile(1));
-        // A ratio that no bounded work can follow.
+        // A ratio that would need unbounded work.
         let answer = solve(&balls(&[1.0; 3]), &DVector::from_vec(vec![-1.0, 0.0]), &[1.0, 1e24], &[1.0; 2]);
         assert!(answer.is_err_and(|fault| fault == Fault::TooLong));
     }

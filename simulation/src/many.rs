@@ -1,7 +1,7 @@
 //! Many motions at once: [`simulate_many`].
 //!
-//! Rows do not know of each other, so outcomes have the same bits in any order and on any number of threads. What is
-//! wrong with a row is the outcome of that row.
+//! Rows are independent of each other, so outcomes have the same bits in any order and on any number of
+//! threads. An error of a row is the outcome of that row.
 
 use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,13 +9,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use hodograph::{Contacts, State};
 
 use crate::{
-    ContactPhase, EnergyAccount, ErrorKind, EventKind, Options, Progress, Simulation, SimulationError,
+    ContactPhase, EnergyAccount, ErrorKind, Event, EventKind, Options, Progress, Simulation, SimulationError,
 };
 
-/// One motion of many: a mechanism with its parameters, a state, and what the motion is to be like.
+/// One of many motions: a mechanism with its parameters, an initial state, and the options of the simulation.
 #[derive(Clone, Debug)]
 pub struct Case<M> {
-    /// the mechanism: `&machine` for one that all rows share, `Box::new(machine)` for one of its own
+    /// the mechanism: `&machine` for one that all rows share, `Box::new(machine)` for one per row
     pub mechanism: M,
     /// time at the start, s
     pub time: f64,
@@ -25,44 +25,47 @@ pub struct Case<M> {
     pub speeds: Vec<f64>,
     /// inputs at the start
     pub inputs: Vec<f64>,
-    /// surfaces, tolerances and all else
+    /// the options of the simulation
     pub options: Options,
-    /// when to end, s
+    /// final time, s
     pub until: f64,
 }
 
-/// What became of one motion.
+/// The outcome of a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Outcome {
-    /// when the motion ended: the time asked for, or that of the error, s
+    /// final time: that of the case, or that of the error, s
     pub time: f64,
-    /// since when nothing moves, s; `None` where something moves at the end
+    /// time since which the mechanism is at rest, s; `None` if it moves at the end
     pub rest: Option<f64>,
     /// coordinates at the end
     pub coordinates: Vec<f64>,
     /// independent speeds at the end
     pub speeds: Vec<f64>,
-    /// the contacts that are closed at the end, by number, rising: the face that a body lies on
+    /// indices of the contacts that are closed at the end, increasing: the face on which a body lies
     pub closed: Vec<usize>,
     /// the energy account at the end
     pub energy: EnergyAccount,
-    /// collisions, each of several contacts at once counted as one
+    /// number of collisions; a simultaneous impact of several contacts counts as one
     pub collisions: usize,
-    /// all events
+    /// number of events
     pub events: usize,
-    /// whether an event of the motion said that other modes fit too
+    /// whether an event of the motion reported that other modes were possible
     pub several_modes: bool,
-    /// why the motion ended early; what stands above is that of the time up to which it could be followed
+    /// whether [`Batch::stop`] ended the motion at an event
+    pub stopped: bool,
+    /// why the motion ended early; the other fields then belong to the last time that was reached
     pub error: Option<SimulationError>,
 }
 
 impl Outcome {
-    /// A stable lower-case name: `rest`, `moving`, or the kind of the error.
+    /// A name, lower case and stable between versions: `rest`, `stopped`, `moving`, or the kind of the error.
     pub fn kind(&self) -> &'static str {
         match (&self.error, self.rest) {
             (Some(error), _) => error.kind.name(),
             (None, Some(_)) => "rest",
+            (None, None) if self.stopped => "stopped",
             (None, None) => "moving",
         }
     }
@@ -83,7 +86,7 @@ impl Outcome {
     }
 }
 
-/// A number made of all bits of outcomes, in their order: equal outcomes have equal digests.
+/// A hash of all bits of outcomes, in order: equal outcomes have equal digests.
 pub fn digest<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> u64 {
     // FNV-1a over words.
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -93,7 +96,7 @@ pub fn digest<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> u64 {
     hash
 }
 
-/// Looks at a batch from another thread, and ends it early.
+/// Observes a batch from another thread, and can cancel it.
 #[derive(Debug, Default)]
 pub struct Watch {
     done: AtomicUsize,
@@ -101,42 +104,59 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// A watch of a batch that has not begun.
+    /// An observer of a batch that has not started.
     pub const fn new() -> Self {
         Self { done: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
     }
 
-    /// The rows that are done.
+    /// The number of finished rows.
     pub fn done(&self) -> usize {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Ends the batch: rows that have not begun do not, and those under way end at the next look, a hundredth of their
-    /// time or an event away.
+    /// Cancels the batch: no further rows start, and running ones end after a hundredth of their time or an
+    /// event.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the batch was told to end.
+    /// Whether the batch was cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 }
 
-/// How a batch runs.
-#[derive(Clone, Copy, Debug, Default)]
+/// Whether the motion of a row ends at this event.
+pub type StopAt<'s> = &'s (dyn Fn(usize, &Event) -> bool + Sync);
+
+/// The execution of a batch.
+#[derive(Clone, Copy, Default)]
 pub struct Batch<'w> {
-    /// Threads; `None` for those of the pool that the caller is in, one for each core otherwise. Without the feature
+    /// Number of threads; `None`: those of the caller's pool, else one per core. Without the feature
     /// `parallel` there is one.
     pub threads: Option<usize>,
-    /// Tells how far the batch is, and can end it.
+    /// The observer, which can cancel the batch.
     pub watch: Option<&'w Watch>,
+    /// Ends the motion of a row at its first event for which this is true.
+    pub stop: Option<StopAt<'w>>,
 }
 
-/// Follows the motions of `rows` cases, each made by its number, and gives their outcomes in that order; `None` for rows
-/// that a [`Watch`] has cancelled.
+impl std::fmt::Debug for Batch<'_> {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { threads, watch, stop } = self;
+        out.debug_struct("Batch")
+            .field("threads", threads)
+            .field("watch", watch)
+            .field("stop", &stop.is_some())
+            .finish()
+    }
+}
+
+/// Simulates the motions of `rows` cases, each made from its index, and returns their outcomes in that order;
+/// `None` for rows that a [`Watch`] has cancelled.
 ///
-/// With the feature `parallel` they share the cores. An error of a row, also one of its `case`, is in its outcome.
+/// With the feature `parallel` they share the cores. An error of a row, including one of its `case`, is in
+/// its outcome.
 ///
 /// ```
 /// use hodograph::{Law, Surface};
@@ -171,7 +191,7 @@ where
             return None;
         }
         let outcome = match case(row) {
-            Ok(case) => follow(&case, watch)?,
+            Ok(case) => follow(&case, watch, &|event| batch.stop.is_some_and(|stop| stop(row, event)))?,
             Err(error) => Outcome { time: error.time, error: Some(error), ..Outcome::default() },
         };
         watch.done.fetch_add(1, Ordering::Relaxed);
@@ -187,11 +207,11 @@ fn spread(
     one: &(dyn Fn(usize) -> Option<Outcome> + Sync),
 ) -> Vec<Option<Outcome>> {
     use rayon::prelude::*;
-    // Motions take unlike times: one after the other, to whoever is free.
+    // Motions take different times: each is given to the next free thread.
     let all = || (0..rows).into_par_iter().with_max_len(1).map(one).collect();
     match threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()) {
         Some(Ok(pool)) => pool.install(all),
-        // The operating system gives no threads of our own: those that there are do it.
+        // If the operating system provides no threads of our own, existing ones are used.
         Some(Err(_)) | None => all(),
     }
 }
@@ -209,7 +229,7 @@ fn spread(
 const LOOKS: u32 = 100;
 
 /// One motion; `None` where the watch ends it.
-fn follow<M>(case: &Case<M>, watch: &Watch) -> Option<Outcome>
+fn follow<M>(case: &Case<M>, watch: &Watch, stop: &dyn Fn(&Event) -> bool) -> Option<Outcome>
 where
     M: Deref<Target: Contacts<f64> + Sized>,
 {
@@ -247,7 +267,13 @@ where
                 return None;
             }
             match simulation.advance(until) {
-                Ok(Progress::Event(event)) => outcome.count(&event.kind, event.time),
+                Ok(Progress::Event(event)) => {
+                    outcome.count(&event.kind, event.time);
+                    outcome.stopped = stop(&event);
+                    if outcome.stopped {
+                        break;
+                    }
+                }
                 Ok(Progress::Reached) => break,
                 Err(error) => {
                     outcome.error = Some(error);
@@ -255,7 +281,7 @@ where
                 }
             }
         }
-        if outcome.error.is_some() {
+        if outcome.stopped || outcome.error.is_some() {
             break;
         }
     }

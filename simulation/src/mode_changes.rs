@@ -1,4 +1,4 @@
-//! Decides the modes of closed contacts at events, and records the events that follow.
+//! Decides the modes of closed contacts at events, and records the resulting events.
 
 use hodograph::{ComponentKind, ContactError, ContactMode, Selection, State};
 use nalgebra::{DVector, Vector2, Vector3};
@@ -12,10 +12,10 @@ use crate::phase::{Leaving, Phase, mus};
 use crate::transition::Transition;
 use crate::{ErrorKind, EventKind, SimulationError};
 
-/// The first step of a slip that begins, beside the time of the problem.
+/// The first step after slip begins, relative to the time of the problem.
 pub(crate) const FIRST: f64 = 5e-7;
 
-/// Which condition of a mode is used up.
+/// The condition of a mode that is violated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending {
     Friction,
@@ -26,12 +26,12 @@ pub(crate) enum Ending {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     ByStaticFriction,
-    /// It is used up: only the sliding coefficient counts.
+    /// Static friction is exhausted: only the sliding coefficient counts.
     No,
 }
 
 impl Transition<'_> {
-    /// Decides the modes after a change of inputs; modes that still fit are kept.
+    /// Decides the modes after a change of inputs; modes that are still admissible are kept.
     pub(crate) fn keep_or_decide(&mut self) -> Result<(), SimulationError> {
         if self.keeps()? {
             return Ok(());
@@ -42,7 +42,7 @@ impl Transition<'_> {
         self.decide(&candidates, &was)
     }
 
-    /// Whether the modes as they are have forces that fit.
+    /// Whether the present modes have admissible forces.
     fn keeps(&self) -> Result<bool, SimulationError> {
         let closed = self.closed();
         if closed.is_empty() {
@@ -58,8 +58,8 @@ impl Transition<'_> {
         }
     }
 
-    /// A condition of the modes is used up: friction no longer suffices at a contact, or its normal force
-    /// vanishes.
+    /// Handles a violated condition of the modes: friction is no longer sufficient at a contact, or its
+    /// normal force vanishes.
     pub(crate) fn modes_ended(&mut self, contact: usize, by: Ending) -> Result<(), SimulationError> {
         let closed: Vec<usize> =
             (0..self.front.phases.len()).filter(|&i| self.front.phases[i].is_closed()).collect();
@@ -70,7 +70,7 @@ impl Transition<'_> {
         }
     }
 
-    /// Friction of the only closed contact no longer suffices.
+    /// Friction of the only closed contact is no longer sufficient.
     fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         let before = self.force_of(contact)?;
@@ -78,7 +78,7 @@ impl Transition<'_> {
         let events = self.events.len();
         let decided = self.decide_where(&[contact], &was, Held::No);
         if let Err(SimulationError { kind: ErrorKind::NoForces(_), .. }) = &decided {
-            // On the edge neither sticking nor slipping fits: it begins to slip.
+            // At the boundary neither sticking nor slipping is admissible: slip begins.
             self.front = front;
             self.events.truncate(events);
         } else {
@@ -90,7 +90,7 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// Slip begins against the friction that held it.
+    /// Slip begins opposite to the friction that held the contact.
     fn slip_against(&mut self, contact: usize, force: &Vector3<f64>) {
         let friction = Vector2::new(force.y, force.z);
         let size = friction.norm();
@@ -121,7 +121,7 @@ impl Transition<'_> {
         self.look_for_rest()
     }
 
-    /// The force at a contact as things are; the last one decided where it cannot be evaluated.
+    /// The present force at a contact; the last decided one if it cannot be evaluated.
     fn force_of(&self, contact: usize) -> Result<Vector3<f64>, SimulationError> {
         let closed = self.closed();
         let place = closed.iter().position(|closed| closed.contact == contact);
@@ -134,8 +134,8 @@ impl Transition<'_> {
         })
     }
 
-    /// Decides the modes of contacts whose gaps are closed and which do not approach or part; `was` are the
-    /// phases before.
+    /// Decides the modes of contacts whose gaps are closed and which neither approach nor separate; `was` are
+    /// their previous phases.
     pub(crate) fn decide(&mut self, candidates: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
         self.decide_where(candidates, was, Held::ByStaticFriction)
     }
@@ -151,7 +151,7 @@ impl Transition<'_> {
         }
         let candidates = &self.mechanism.with_torques(candidates)[..];
         self.front.resting = false;
-        // Contacts without slip are held so, that it is none exactly.
+        // The velocities of contacts without slip are projected, so that their slip is exactly zero.
         let slips = self.slips_of(candidates)?;
         for (&contact, slip) in candidates.iter().zip(&slips) {
             self.front.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
@@ -183,7 +183,7 @@ impl Transition<'_> {
         }
     }
 
-    /// No finite forces exist: an impact without collision follows where a sliding contact jams.
+    /// If there are no finite forces: an impact without collision if a sliding contact jams.
     pub(crate) fn without_forces(
         &mut self,
         candidates: &[usize],
@@ -222,7 +222,7 @@ impl Transition<'_> {
         contacts.iter().enumerate().map(|(i, &contact)| self.friction(contact, speed(i))).collect()
     }
 
-    /// The directions of slip; none where there is none.
+    /// The directions of slip; `None` without slip.
     pub(crate) fn slips_of(
         &self,
         candidates: &[usize],
@@ -250,7 +250,7 @@ impl Transition<'_> {
             .collect())
     }
 
-    /// Takes the modes chosen, and says what changed.
+    /// Applies the chosen modes, and records the changes as events.
     pub(crate) fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection[place];
@@ -301,12 +301,12 @@ impl Transition<'_> {
         }
     }
 
-    /// Whether the bounces of a contact, which now are lower than the tolerance, have not yet ended.
+    /// Whether the bounces of a contact, which are now lower than the tolerance, have not yet ended.
     pub(crate) fn bounces(&self, contact: usize) -> bool {
         self.front.chatter.iter().any(|&(time, other)| other == contact && time > self.front.t)
     }
 
-    /// A contact begins: said now, or when its bounces have ended.
+    /// Begins a contact; the event is recorded now, or when its bounces have ended.
     fn begin_contact(&mut self, contact: usize, selection: Selection) {
         if self.bounces(contact) {
             return;
@@ -316,12 +316,12 @@ impl Transition<'_> {
         self.push(Some(contact), EventKind::Contact { mode, selection });
     }
 
-    /// Says that a contact has begun.
+    /// Records that a contact has begun.
     pub(crate) fn announce_contact(&mut self, contact: usize) {
         self.begin_contact(contact, Selection::Unique);
     }
 
-    /// Whether everything that touches sticks, and nothing moves.
+    /// Checks whether the mechanism is at rest: all closed contacts stick, and nothing moves.
     pub(crate) fn look_for_rest(&mut self) -> Result<(), SimulationError> {
         let closed = self.closed();
         if self.front.resting || closed.is_empty() || closed.iter().any(|closed| closed.slides.is_some()) {

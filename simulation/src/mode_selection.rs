@@ -1,9 +1,9 @@
 //! Chooses the modes of the closed contacts at an instant.
 //!
-//! One contact has an exact answer in the runtime. Of several contacts, rest is taken where it fits: all that
-//! do not slip keep sticking. Otherwise the forces of all contacts are found at once
-//! ([`contact_problem::solve`]), and the modes follow from them. Contacts that leave their static cones slip with the
-//! sliding coefficient (docs/theory.md, section 17.15).
+//! For a single contact the runtime has an exact solution. For several contacts, rest is chosen if it is
+//! admissible: all contacts without slip keep sticking. Otherwise the forces of all contacts are computed
+//! together ([`contact_problem::solve`]), and determine the modes. Contacts that leave their static cones
+//! slip with the sliding coefficient (docs/theory.md, section 17.15).
 
 use hodograph::{ContactError, ContactMode, Selection, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
@@ -13,12 +13,12 @@ use crate::contact_problem::{self, MOST_ENUMERATED, Mode, Problem, Unsolved};
 use crate::forces::{Forces, Lacking};
 use crate::pair::Friction;
 
-/// What a closed contact does from an event on.
+/// The mode of a closed contact after an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Decision {
     Separate,
     Stick,
-    /// Along a direction; whether slip begins now.
+    /// Sliding along a direction; and whether slip begins now.
     Slide(Vector2<f64>, bool),
 }
 
@@ -30,8 +30,8 @@ pub(crate) struct Choice {
     pub selection: Vec<Selection>,
 }
 
-/// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not
-/// slip; `before` are the forces so far, to which those chosen are near where several fit.
+/// Chooses the modes of closed contacts. `slips` is the direction of slip of each, `None` without slip;
+/// `before` are the previous forces, near which solutions are sought if several are admissible.
 pub(crate) fn choose(
     support: &ClosedContacts,
     slips: &[Option<Vector2<f64>>],
@@ -39,7 +39,7 @@ pub(crate) fn choose(
     before: &DVector<f64>,
 ) -> Result<Choice, Lacking> {
     if support.is_idle() {
-        // Nothing presses or parts them: what does not slip goes on without, and so does what slips.
+        // No contact is pressed or separated: contacts without slip remain so, and sliding ones keep sliding.
         let decision =
             |slip: &Option<Vector2<f64>>| slip.map_or(Decision::Stick, |d| Decision::Slide(d, false));
         return Ok(Choice {
@@ -51,7 +51,7 @@ pub(crate) fn choose(
     if support.len() == 1 {
         return one(support, slips[0], friction[0], before);
     }
-    // What does not slip is held by static friction, until it is seen to slip.
+    // Contacts without slip are held by static friction, until slip is found.
     let mut held: Vec<bool> = slips.iter().map(Option::is_none).collect();
     loop {
         let mu = coefficients(friction, &held);
@@ -73,13 +73,13 @@ pub(crate) fn choose(
     }
 }
 
-/// The coefficients of contacts that are held by static friction, or slip or begin to.
+/// The coefficients of contacts that are held by static friction, that slip or that begin to slip.
 fn coefficients(friction: &[Friction], held: &[bool]) -> Vec<f64> {
     friction.iter().zip(held).map(|(mu, &held)| if held { mu.sticks } else { mu.slips }).collect()
 }
 
-/// Whether other modes fit where contacts without slip may be held by static friction or slip with less: those of
-/// every share of them that is held.
+/// Whether other modes are admissible when each contact without slip may be held by static friction, or slip
+/// with the lower coefficient: those of every subset of held contacts.
 fn others_fit(
     support: &ClosedContacts,
     slips: &[Option<Vector2<f64>>],
@@ -116,7 +116,7 @@ fn others_fit(
     })
 }
 
-/// Chooses the modes where each contact has one coefficient of friction.
+/// Chooses the modes if each contact has a single coefficient of friction.
 fn choose_with(
     support: &ClosedContacts,
     problem: &Problem<'_>,
@@ -134,7 +134,7 @@ fn choose_with(
         }
         _ => Lacking::Common,
     })?;
-    // Among many forces for this motion, those in the middle.
+    // Among many forces for this motion the analytic centre.
     match contact_problem::with_modes(problem, &solution.modes) {
         Ok(middle) if middle.margin >= 0.0 => Ok(chosen(problem, &solution.modes, &middle.force)),
         _ => Ok(chosen(problem, &solution.modes, &solution.force)),
@@ -150,17 +150,20 @@ fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Choice
     Choice {
         decisions: modes.iter().zip(problem.slip).map(decision).collect(),
         forces: (0..modes.len()).map(|i| ClosedContacts::three(force, i)).collect(),
-        selection: vec![selection(problem, modes); modes.len()],
+        selection: vec![selection(problem, modes, force); modes.len()],
     }
 }
 
-/// Whether other modes fit too. Nobody looks where there are many contacts.
-fn selection(problem: &Problem<'_>, modes: &[Mode]) -> Selection {
-    if modes.len() > MOST_ENUMERATED {
-        return Selection::Unknown;
-    }
+/// Whether other modes are admissible, too. For many contacts they are not listed: another motion may be found,
+/// but none is excluded.
+fn selection(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Selection {
+    let many = modes.len() > MOST_ENUMERATED;
     if only_rest(problem, modes) {
-        return Selection::Unique;
+        return if many { Selection::Unknown } else { Selection::Unique };
+    }
+    if many {
+        let other = contact_problem::another(problem, force);
+        return if other { Selection::SeveralModes } else { Selection::Unknown };
     }
     let differs = |other: &contact_problem::Solution| {
         other.modes.iter().zip(modes).any(|(other, mode)| !other.is_like(mode))
@@ -169,8 +172,8 @@ fn selection(problem: &Problem<'_>, modes: &[Mode]) -> Selection {
     if several { Selection::SeveralModes } else { Selection::Unique }
 }
 
-/// Whether contacts rest and could do so without friction: then no other motion obeys the laws (docs/theory.md,
-/// section 17.10).
+/// Whether contacts are at rest and could be so without friction: then no other motion obeys the laws
+/// (docs/theory.md, section 17.10).
 fn only_rest(problem: &Problem<'_>, modes: &[Mode]) -> bool {
     let rests = modes.iter().all(|mode| *mode == Mode::Stick) && problem.slip.iter().all(Option::is_none);
     rests && contact_problem::rest(&Problem { mu: &vec![0.0; modes.len()], ..*problem }).is_some()
@@ -193,7 +196,7 @@ fn one(
         .map_err(|error| Lacking::Contact(0, error))
     };
     let slipping = with(friction.slips);
-    // Static friction may hold what sliding friction does not.
+    // Static friction may hold a contact that sliding friction does not.
     let held =
         if slip.is_none() && friction.sticks > friction.slips { with(friction.sticks).ok() } else { None };
     let answer = match held {
@@ -221,9 +224,9 @@ fn decision(mode: ContactMode, direction: Option<Vector2<f64>>) -> Decision {
     }
 }
 
-/// Turns the directions in which slip begins until the acceleration across each is that given, 0 where it is
-/// along it: Newton's method for the angles. `begin` are these contacts, by their place in the forces and in
-/// the directions.
+/// Turns the directions in which slip begins until the acceleration perpendicular to each has the given
+/// value, 0 for slip along the acceleration: Newton's method for the angles. `begin` are these contacts, by
+/// their indices in the forces and in the directions.
 pub(crate) fn begin_along(
     begin: &[(usize, usize)],
     directions: &mut [Option<Vector2<f64>>],
@@ -234,9 +237,9 @@ pub(crate) fn begin_along(
         return Some(());
     }
     let m = begin.len();
-    // Slip that begins cannot be against the acceleration; slip that there is may.
+    // New slip cannot be opposite to the acceleration; existing slip can.
     let starts = wanted.iter().all(|wanted| *wanted == 0.0);
-    // Across each direction, relative to the size of the acceleration.
+    // The perpendicular components, relative to the size of the acceleration.
     let across = |directions: &[Option<Vector2<f64>>]| -> Option<DVector<f64>> {
         let found = forces(directions)?;
         let mut residual = DVector::zeros(m);
@@ -245,7 +248,7 @@ pub(crate) fn begin_along(
             let rate = Vector2::new(found.acceleration[3 * place + 1], found.acceleration[3 * place + 2]);
             residual[row] = d.x * rate.y - d.y * rate.x - wanted[row];
             if rate.dot(&d) < 0.0 && starts {
-                // The other way round is no zero.
+                // The opposite direction is not a solution.
                 residual[row] += if residual[row] < 0.0 { rate.dot(&d) } else { -rate.dot(&d) };
             }
         }
@@ -278,7 +281,7 @@ pub(crate) fn begin_along(
         };
         let step = -least_squares(&matrix, &residual);
         let longest = step.amax();
-        // Shorter where it does not help.
+        // Shorten the step if it does not help.
         let mut share = 1.0 / longest.max(1.0);
         let next = loop {
             let next = turned(directions, &(&step * share));
@@ -290,7 +293,7 @@ pub(crate) fn begin_along(
         };
         let Some((next, left)) = next else { break };
         directions.copy_from_slice(&next);
-        // Derivatives that serve well serve again.
+        // Derivatives are reused as long as they work well.
         if left.amax() < 1e-2 * residual.amax() {
             jacobian = Some(matrix);
         }
@@ -302,8 +305,8 @@ pub(crate) fn begin_along(
     Some(())
 }
 
-/// Steps of Newton's method at most, the difference by which its derivatives are formed, and angles of which rounding
-/// alone may keep it from falling, rad.
+/// Largest number of Newton steps, the difference of angles for its derivatives, and angles below which only
+/// rounding prevents further decrease, rad.
 const TURNS: usize = 30;
 const TURN: f64 = 1e-6;
 const ROUNDED: f64 = 1e-10;
@@ -347,9 +350,9 @@ mod tests {
         }
     }
 
-    /// What is chosen obeys the law of two coefficients: what sticks does not accelerate and stays in the static
-    /// cone, what slips has sliding friction against its acceleration, and what does not exceed a static cone in
-    /// rest rests.
+    /// The choices obey the law with two coefficients: sticking contacts do not accelerate and stay in their
+    /// static cones, sliding ones have sliding friction opposite to their acceleration, and contacts within
+    /// their static cones at rest stay at rest.
     #[test]
     fn choices_obey_both_coefficients() {
         let mut seen = [0; 4];

@@ -1,5 +1,4 @@
-//! The right-hand side of the integration: the rates of the state while the modes of all contacts stay the
-//! same.
+//! The right-hand side of the integration: the rates of the state for constant modes of all contacts.
 
 use hodograph::{ComponentKind, ContactError, State, StateError};
 use nalgebra::{DVector, Vector2};
@@ -15,10 +14,10 @@ use crate::settled_direction;
 use crate::slip_direction::settle_directions;
 use crate::torques::WithTorques;
 
-/// Slip below this, relative to the speeds that make it up, is none.
+/// Slip below this, relative to the terms of the contact velocity, counts as zero.
 pub(crate) const NO_SLIP: f64 = 1e-11;
-/// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it
-/// began.
+/// Below this speed of slip, relative to the terms of the contact velocity, its direction is the one in which
+/// it began.
 pub(crate) const DIRECTION: f64 = 1e-10;
 
 /// Why the rates cannot be evaluated.
@@ -26,7 +25,7 @@ pub(crate) const DIRECTION: f64 = 1e-10;
 pub(crate) enum Failure {
     State(StateError),
     Contact(usize, ContactError<f64>),
-    /// No forces of all closed contacts fit their modes.
+    /// No forces of all closed contacts are compatible with their modes.
     NoForces,
     /// A function of the surfaces of a contact fails.
     Law(usize, String),
@@ -47,13 +46,13 @@ pub(crate) struct Motion<'a> {
     pub surfaces: &'a [Option<Pair>],
     pub held: &'a [f64],
     pub closed: &'a [Closed],
-    /// Nothing moves: what is left of the rates is rounding.
+    /// whether the mechanism is at rest, so that the rates are rounding errors
     pub resting: bool,
     /// the greatest speeds so far
     pub scale: &'a [f64],
 }
 
-/// All that is known of a state.
+/// The evaluation of a state.
 pub(crate) struct Evaluation {
     pub rates: Vec<f64>,
     pub support: ClosedContacts,
@@ -61,7 +60,7 @@ pub(crate) struct Evaluation {
     pub forces: Option<Forces>,
 }
 
-/// Memory of evaluations of one motion.
+/// Work space for evaluations of one motion.
 pub(crate) struct Room {
     support: ClosedContacts,
     holds: Vec<Hold>,
@@ -70,9 +69,10 @@ pub(crate) struct Room {
     numbers: Vec<f64>,
 }
 
-/// The direction of slip that began along `began`: its own, where it is more than rounding of the terms that make it
-/// up. `now` is their size, `ever` that of the greatest speeds so far: what projections have left of a slip that begins
-/// from none may be rounding of those, against the way it goes, although nothing else moves any more.
+/// The direction of slip that began along `began`: its own direction if slip is larger than the rounding
+/// error of its terms. `now` is their size, `ever` that with the greatest speeds so far: a rounding error
+/// that projections leave of slip that begins from zero may be opposite to its direction, even if nothing
+/// else moves.
 fn direction(
     slip: Vector2<f64>,
     began: Vector2<f64>,
@@ -84,7 +84,7 @@ fn direction(
     if speed > DIRECTION * now() && (forward || speed > NO_SLIP * ever()) { slip / speed } else { began }
 }
 
-/// Numbers of the state beyond coordinates and speeds: work of friction and of inputs.
+/// Number of components of the state beyond coordinates and speeds: work of friction and of inputs.
 pub(crate) const WORKS: usize = 2;
 
 impl Motion<'_> {
@@ -102,7 +102,7 @@ impl Motion<'_> {
         Ok(inputs)
     }
 
-    /// Writes the inputs that follow from time and state over those that are held.
+    /// Replaces constant inputs by those that are functions of time and state.
     fn drive_inputs(&self, t: f64, y: &[f64], inputs: &mut [f64]) -> Result<(), Failure> {
         if let Drive::Continuous(function) = self.drive {
             let (q, u) = self.split(y);
@@ -114,14 +114,14 @@ impl Motion<'_> {
         Ok(())
     }
 
-    /// What is said of an input that is no number.
+    /// The message about an input that is not finite.
     pub fn bad_input(&self, index: usize, value: f64) -> String {
         let name =
             self.mechanism.component(ComponentKind::Input, index).map_or("?", |component| component.name);
         format!("the input {name} is {value}: what drives the mechanism must give finite numbers")
     }
 
-    /// Memory for evaluations, used again from one to the next.
+    /// Work space that is reused from one evaluation to the next.
     pub fn room(&self) -> Room {
         let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
         Room {
@@ -133,7 +133,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Modes as they are at these velocities.
+    /// The modes at these velocities.
     pub fn holds(&self, support: &ClosedContacts, speeds: &[f64]) -> Vec<Hold> {
         let mut holds = Vec::with_capacity(self.closed.len());
         self.hold(support, speeds, &mut holds);
@@ -144,7 +144,7 @@ impl Motion<'_> {
         holds.clear();
         holds.extend(self.closed.iter().enumerate().map(|(i, closed)| match closed.slides {
             None => Hold::Stick,
-            // Its direction follows from the state.
+            // The direction follows from the state.
             Some(began) if closed.turning.is_some() => Hold::Slide(began),
             Some(began) => {
                 let size = |speeds: &[f64]| support.velocity_size(i, speeds);
@@ -167,17 +167,17 @@ impl Motion<'_> {
         Ok(())
     }
 
-    /// Rates, and the forces of the closed contacts: where many forces give one motion, those in the middle.
+    /// Rates and the forces of the closed contacts; if many forces give one motion, their analytic centre.
     pub fn evaluate(&self, t: f64, y: &[f64]) -> Result<Evaluation, Failure> {
         self.evaluated(t, y, None, Wanted::Centre)
     }
 
-    /// The same from forces that are nearly the answer, which save work.
+    /// The same, starting from approximate forces, which saves work.
     pub fn evaluate_near(&self, t: f64, y: &[f64], guess: Option<&Forces>) -> Result<Evaluation, Failure> {
         self.evaluated(t, y, guess.map(|forces| &forces.lambda), Wanted::Centre)
     }
 
-    /// Rates alone, written into `rates`; `room` is that of this motion.
+    /// Writes only the rates to `rates`; `room` is the work space of this motion.
     pub fn rates(&self, t: f64, y: &[f64], rates: &mut [f64], room: &mut Room) -> Result<(), Failure> {
         self.write_rates(t, y, (None, Wanted::Motion), rates, room).map(|_| ())
     }
@@ -226,7 +226,7 @@ impl Motion<'_> {
             let answer = forces(support, holds, mu, guess, wanted).map_err(lacking)?;
             let greatest = answer.lambda.amax();
             let accelerations = &mut rates[n..n + p];
-            // The sizes of the terms.
+            // The sums of the magnitudes of the terms.
             numbers.clear();
             numbers.extend(accelerations.iter().map(|rate| rate.abs()));
             for (response, force) in support.response.as_slice().chunks_exact(p.max(1)).zip(&answer.lambda) {
@@ -235,7 +235,7 @@ impl Motion<'_> {
                     *size += response.abs() * greatest;
                 }
             }
-            // What friction holds stays exactly where it is.
+            // Components that friction holds are exactly zero.
             let rounding = if self.resting { 1e-11 } else { 64.0 * f64::EPSILON };
             for (rate, size) in accelerations.iter_mut().zip(numbers.iter()) {
                 if rate.abs() <= rounding * size {
@@ -256,7 +256,8 @@ impl Motion<'_> {
         Ok(found)
     }
 
-    /// Power of the inputs: the generalised forces they add, times the speeds. `numbers` is memory.
+    /// The power of the inputs: the generalised forces that they add, times the speeds. `numbers` is work
+    /// space.
     fn input_power(&self, state: &State<'_>, numbers: &mut Vec<f64>) -> Result<f64, StateError> {
         let (p, w) = (state.speeds.len(), state.inputs.len());
         numbers.clear();
@@ -273,15 +274,16 @@ impl Motion<'_> {
 mod tests {
     use super::*;
 
-    /// Two links of a chain on a floor came to rest but for 1.5e-14 m/s, which is all that moved there. Slip began the
-    /// other way, was at once taken to go forward, and had to begin again, 2000 times.
+    /// Two links of a chain on a floor came to rest except for 1.5e-14 m/s, which was all that moved. Slip
+    /// began in the opposite direction, was immediately taken to go forward, and had to begin again, 2000
+    /// times.
     #[test]
     fn slip_goes_the_way_it_began_while_it_is_rounding() {
         let (began, left) = (Vector2::new(-1.0, 0.0), Vector2::new(1.485_565e-14, 0.0));
         let of = |slip, now: f64, ever: f64| direction(slip, began, || now, || ever);
         assert_eq!(of(left, left.norm(), 0.7), began);
         assert_eq!(of(-left, left.norm(), 0.7), began);
-        // Slip that is none of itself has the way it began; what is more than rounding has its own.
+        // Slip of rounding errors has the direction in which it began; larger slip has its own.
         assert_eq!(of(-left, 0.7, 0.7), began);
         assert_eq!(of(1e3 * left, 1e3 * left.norm(), 0.7), -began);
         let across = Vector2::new(-3e-6, 4e-6);

@@ -10,21 +10,21 @@ use crate::{ContactLaw, Drive};
 /// A function of time, coordinates and speeds whose zeros are events.
 pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
 
-/// What happens where several contacts are struck at the same time.
+/// The treatment of several contacts that are struck at the same time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImpactsAtOnce {
-    /// All that approach strike at once, by Poisson's hypothesis in two phases where it is the law of all of them,
-    /// else by Moreau's law, with friction; what their impulses press together strikes next, until nothing
-    /// approaches. A contact that strikes alone does so exactly, by its own law.
+    /// All approaching contacts are struck at once, with friction: by Poisson's hypothesis in two phases if
+    /// all of them have that law, else by Moreau's law. Contacts that their impulses press together are
+    /// struck next, until none approaches. A single contact is solved exactly, by its own law.
     #[default]
     Approaching,
-    /// One after the other, the fastest approach first, until nothing approaches.
+    /// Contacts are struck successively, the fastest approach first, until none approaches.
     Sequential,
-    /// All that touch at once, by the same laws. Moreau's: v+_n = -e v-_n or more.
+    /// All closed contacts at once, by the same laws. Moreau's law is v+_n >= -e v-_n.
     Simultaneous,
-    /// All that touch at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction
-    /// only.
+    /// All closed contacts at once, after Liu, Zhao and Brogliato, with the ratios of [`Options::stiffness`];
+    /// without friction only.
     Lzb,
     /// The simulation ends with an error.
     Stop,
@@ -36,31 +36,31 @@ pub struct Options {
     /// relative tolerance of the integration
     pub relative_tolerance: f64,
     /// absolute tolerance of the integration, in the units of coordinates and speeds; bounces lower than
-    /// this end in contact
+    /// this, in metres, end in lasting contact
     pub absolute_tolerance: f64,
     /// greatest step of the integration, s
     pub max_step: f64,
-    /// times at which inputs or their rates jump, rising, s: no step of the integration goes beyond the next
-    /// of them, so that none is stepped over
+    /// times at which inputs or their rates jump, increasing, s: steps of the integration end at the next of
+    /// them
     pub breaks: Vec<f64>,
-    /// the surfaces of the contacts that have one of their own, by number
+    /// the surfaces of individual contacts, by index
     pub surfaces: Vec<(usize, Surface<f64>)>,
-    /// the surfaces of all other contacts; without it they have those that the model states
+    /// the surface of all other contacts; `None`: those that the model states
     /// ([`Contacts::surface`](hodograph::Contacts::surface))
     pub surface: Option<Surface<f64>>,
-    /// what contacts that have a law of their own do beyond mu, e and law of their surfaces, by number
+    /// the laws of individual contacts beyond mu, e and law of their surfaces, by index
     pub laws: Vec<(usize, ContactLaw)>,
-    /// what all other contacts do beyond that; without it they have the laws that the model states
+    /// the law of all other contacts; `None`: those that the model states
     /// ([`Contacts::stated_law`](hodograph::Contacts::stated_law))
     pub law: Option<ContactLaw>,
-    /// where inputs come from
+    /// the source of inputs
     pub drive: Drive,
-    /// what happens where several contacts are struck together
+    /// the treatment of several contacts that are struck at the same time
     pub together: ImpactsAtOnce,
-    /// of [`ImpactsAtOnce::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts
-    /// that are not named have 1
+    /// for [`ImpactsAtOnce::Lzb`]: the stiffnesses of contacts, by index; only their ratios matter, and the
+    /// default is 1
     pub stiffness: Vec<(usize, f64)>,
-    /// whether the outcomes of all orders of up to four contacts struck together are compared
+    /// whether the outcomes of all orders of up to four contacts struck at the same time are compared
     /// ([`crate::CollisionRecord::spread`])
     pub compare_orders: bool,
     /// functions whose zeros are events

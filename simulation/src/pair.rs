@@ -1,5 +1,5 @@
-//! The surfaces of a contact as a motion asks for them: friction in a mode, restitution at a speed, the time that
-//! bounces last.
+//! The surfaces of a contact as a motion uses them: friction in a mode, restitution at a speed, the duration
+//! of bounces.
 
 use hodograph::Surface;
 
@@ -10,11 +10,11 @@ use crate::contact_law::{ContactLaw, Restitution, Sliding};
 pub(crate) struct Pair {
     pub surface: Surface<f64>,
     pub law: ContactLaw,
-    /// whether the faces or edges that touch end
+    /// whether the faces or edges are bounded
     pub ends: bool,
 }
 
-/// Coefficients of friction of a contact in a state: up to which it sticks, and with which it slips.
+/// The coefficients of friction of a contact in a state: the static and the sliding one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Friction {
     pub sticks: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Friction {
 }
 
 impl Friction {
-    /// One coefficient for both.
+    /// The same coefficient for both.
     pub fn same(mu: f64) -> Self {
         Self { sticks: mu, slips: mu }
     }
@@ -82,7 +82,7 @@ impl Pair {
         Ok(Surface { mu: self.mu_in_impacts(), e: self.e(approach)?, law: self.surface.law })
     }
 
-    /// Whether it never rebounds.
+    /// Whether the contact never rebounds.
     pub fn is_plastic(&self) -> bool {
         match &self.law.restitution {
             Restitution::Constant | Restitution::Threshold { .. } | Restitution::Power { .. } => {
@@ -93,14 +93,14 @@ impl Pair {
         }
     }
 
-    /// The time that bounces last that begin with this rebound after this approach, while the contact is pulled
-    /// together with the acceleration `pull`: the sum of the flights, each with the rebound of the one before as
-    /// approach. `None` where it has no end.
+    /// The total time of the bounces that begin with this rebound after this approach, while the contact is
+    /// pulled together with the acceleration `pull`: the sum of the flights, each of which begins with the
+    /// rebound of the previous approach. `None` if the sum does not converge.
     pub fn bounces_for(&self, before: f64, rebound: f64, pull: f64) -> Option<f64> {
         if self.law.restitution == Restitution::Constant {
             return (rebound < before).then(|| 2.0 * rebound / (pull * (1.0 - rebound / before)));
         }
-        // With friction the rebound is not e times the approach, but nearly in proportion to it.
+        // With friction the rebound is not e times the approach, but nearly proportional to it.
         let share = rebound / (before * self.e(before).ok().filter(|e| *e > 0.0)?);
         let (mut speed, mut sum) = (rebound, 0.0);
         for _ in 0..FLIGHTS {
@@ -119,11 +119,11 @@ impl Pair {
 }
 
 impl Pair {
-    /// What is wrong with the law, in a sentence.
+    /// Checks the law.
     ///
     /// # Errors
     ///
-    /// The sentence: what must hold and does not.
+    /// A sentence: the condition that is violated.
     pub fn check(&self) -> Result<(), String> {
         let (surface, law) = (&self.surface, &self.law);
         let positive = |what: &str, value: f64| {
@@ -190,7 +190,8 @@ impl Pair {
     }
 }
 
-/// Flights that are counted, and the speed, relative to the first, below which those that follow are left out.
+/// Largest number of flights, and the speed, relative to the first, below which the remaining flights are
+/// neglected.
 const FLIGHTS: usize = 100_000;
 const ENDED: f64 = 1e-9;
 
@@ -198,7 +199,7 @@ const ENDED: f64 = 1e-9;
 mod tests {
     use super::*;
 
-    /// The sum of a ladder with constant e, by the other computation.
+    /// The sum of flights with constant e, computed independently.
     #[test]
     fn ladders_have_the_sum_of_their_series() {
         let surface = Surface { mu: 0.0, e: 0.7, law: hodograph::Law::Newton };

@@ -1,9 +1,10 @@
 //! Poisson's hypothesis for several contacts at once, in two phases, after Glocker and Pfeiffer.
 //!
-//! Compression ends with impulses p_C that stop every approach: v_C = v- + W p_C with p_Cn >= 0, v_Cn >= 0, one of them
-//! zero, and Coulomb's friction against the slip at its end. Expansion gives each contact e p_Cn, and more where it
-//! would approach: v+ = v_C + W p_E with p_En >= e p_Cn, v+_n >= 0, one of them with equality, and friction
-//! abs(p_Et) <= mu p_En against the slip that is left (docs/theory.md, section 17.13).
+//! Compression ends with impulses p_C that stop every approach: v_C = v- + W p_C with p_Cn >= 0, v_Cn >= 0,
+//! one of them zero, and Coulomb friction against the slip at its end. Expansion gives each contact the
+//! normal impulse e p_Cn, or more if it would approach: v+ = v_C + W p_E with p_En >= e p_Cn, v+_n >= 0, one
+//! of them with equality, and friction abs(p_Et) <= mu p_En against the remaining slip (docs/theory.md,
+//! section 17.13).
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -22,11 +23,12 @@ pub(crate) fn impulses(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Resul
     Ok(compression + expansion(w, &velocity, mu, &given)?)
 }
 
-/// The impulses of expansion, where each contact is given this normal impulse at least.
+/// The impulses of expansion, for given least normal impulses of the contacts.
 ///
-/// Friction is that of the whole normal impulse. So a contact is two in one place: one with the normal impulse that is
-/// needed beyond the given one, and one whose normal impulse is the given one whatever moves (its normal row of W is
-/// coupled with nothing). Both slip with the same velocity, so their friction adds up to that of one contact with both.
+/// Friction is that of the whole normal impulse. So a contact is represented by two: one with the additional
+/// normal impulse, and one with the given normal impulse, independent of the motion (its normal row of W is
+/// coupled with nothing). Both slip with the same velocity, so that their friction adds up to that of one
+/// contact with both impulses.
 fn expansion(
     w: &DMatrix<f64>,
     velocity: &DVector<f64>,
@@ -66,7 +68,7 @@ fn expansion(
     Ok(impulse)
 }
 
-/// Impulses without restitution under which nothing approaches, with friction against the slip that is left.
+/// Impulses without restitution under which no contact approaches, with friction against the remaining slip.
 fn solved(w: &DMatrix<f64>, velocity: &DVector<f64>, mu: &[f64]) -> Result<DVector<f64>, Unsolved> {
     let none: Vec<Option<Vector2<f64>>> = vec![None; mu.len()];
     let problem = Problem { w, beta: velocity, mu, slip: &none, noise: None };

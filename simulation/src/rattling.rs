@@ -1,12 +1,12 @@
-//! Ends rattling: several contacts of a body that strike in turn, faster and faster and lower and lower.
+//! Ends rattling: several contacts of a body that collide in turn, faster and faster with decreasing heights.
 //!
-//! A block that rocks, or a box that falls flat on its corners, strikes the ground infinitely often in a
-//! finite time T, even with e = 0; speeds and heights tend to zero. To first order in the remaining speeds v,
-//! the impulses p of the whole sequence satisfy W p = -v - beta T, with friction along one direction:
-//! p = p0 + lambda T, where the impulses p0 make the velocities zero at once and lambda are the forces of
-//! lasting contact. Rule: if the heights are below the tolerance and all forces of lasting contact press,
-//! apply the impulses p0 and continue in contact. For one contact it is the rule of docs/theory.md,
-//! section 17.7.
+//! A block that rocks, or a box that falls flat on its corners, collides with the ground infinitely often in
+//! a finite time T, even with e = 0; speeds and heights tend to zero. To first order in the remaining speeds
+//! v, the impulses p of the whole sequence satisfy W p = -v - beta T, with friction along one direction: p =
+//! p0 + lambda T, where the impulses p0 make the velocities zero at once and lambda are the forces of lasting
+//! contact. Rule: if the heights are below the tolerance and all forces of lasting contact press, the
+//! impulses p0 are applied, and the motion continues in contact. For a single contact this is the rule of
+//! docs/theory.md, section 17.7.
 
 use hodograph::ComponentKind;
 
@@ -16,12 +16,12 @@ use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
 use crate::transition::Transition;
 
-/// Contacts nearer than so many times the tolerance take part.
+/// Contacts closer than this many times the tolerance take part.
 const NEAR: f64 = 8.0;
 
 impl Transition<'_> {
-    /// A contact has closed: whether it and others near it now stay, because they would rattle below the
-    /// tolerance only.
+    /// Handles a contact that has closed: whether it and others near it stay closed, because they would only
+    /// rattle below the tolerance.
     pub(crate) fn settles_into_contact(&mut self, first: usize) -> Result<bool, SimulationError> {
         let mut near = self.near(first)?;
         if near.len() < 2 || !self.quiet(&near)? {
@@ -45,7 +45,7 @@ impl Transition<'_> {
         Ok(false)
     }
 
-    /// The contacts that are closed or nearly so.
+    /// The contacts that are closed or almost closed.
     fn near(&self, first: usize) -> Result<Vec<usize>, SimulationError> {
         let state = self.here();
         let reach = NEAR * self.options.absolute_tolerance;
@@ -66,7 +66,7 @@ impl Transition<'_> {
         Ok(near)
     }
 
-    /// Whether the normal velocities are so small that falls as high as the tolerance explain them.
+    /// Whether the normal velocities are no greater than those of falls from the height of the tolerance.
     fn quiet(&self, near: &[usize]) -> Result<bool, SimulationError> {
         let support = self.support(near, true)?;
         let pull = (0..near.len()).map(|i| support.beta[3 * i].abs()).fold(0.0, f64::max);
@@ -74,7 +74,7 @@ impl Transition<'_> {
         Ok((0..near.len()).all(|i| support.velocity[3 * i].powi(2) <= most))
     }
 
-    /// Makes contacts stay; whether they do, and would not have risen above the tolerance.
+    /// Closes the contacts; returns whether they stay closed, and would not have risen above the tolerance.
     fn lie(&mut self, near: &[usize]) -> Result<bool, SimulationError> {
         let was = self.front.phases.clone();
         let (n, p) =
@@ -85,13 +85,13 @@ impl Transition<'_> {
         let hit = self.plastic_impact(near, &self.front.y[n..n + p])?;
         self.front.y[n..n + p].copy_from_slice(&hit.after);
         for &contact in near {
-            // What stuck may slip after the impact.
+            // Contacts that stuck may slip after the impact.
             self.front.phases[contact] = Phase::Open(Leaving::NOW);
         }
         let impacts = self.front.energy.impacts;
         self.decide(near, &was)?;
-        // What parts slower than the tolerance stays, too: all that is lost is work of the sequence, but for what impacts
-        // of the decision have told.
+        // Contacts that separate with less than the tolerance stay closed, too: all lost energy is work of
+        // the sequence, except that of impacts which the decision has recorded.
         let told = self.front.energy.impacts - impacts;
         self.front.energy.impacts += self.kinetic()? - kinetic - told;
         let support = self.support(near, false)?;

@@ -1,7 +1,7 @@
-//! A length and a time of the problem, in which tolerances are told.
+//! A length and a time of the problem, in which tolerances are measured.
 //!
-//! What is short, near or slow has no meaning without units. The length is the greatest of the gaps and lever
-//! arms of contacts, the time that in which their free accelerations or their velocities cover it
+//! Whether something is short, near or slow depends on units. The length is the greatest of the gaps and
+//! lever arms of contacts, the time that in which their free accelerations or velocities cover this length
 //! (docs/theory.md, section 18.14).
 
 use hodograph::{ComponentKind, Contacts, State};
@@ -18,21 +18,22 @@ pub(crate) struct Scales {
     pub length: f64,
     /// s
     pub time: f64,
-    /// A normal velocity that is seen, m/s: below it a contact opens by less than 1e-12 of the length. Infinite
-    /// where nothing tells it.
+    /// the smallest normal velocity that matters, m/s: below it a contact opens by less than 1e-12 of the
+    /// length; infinite if there is no bound
     pub slow: f64,
 }
 
-/// A gap below this part of the greatest coordinate is closed: its size tells nothing. Nor does a normal velocity
-/// below this part of its terms.
+/// A gap below this part of the greatest coordinate counts as closed, and does not define a length; a normal
+/// velocity below this part of its terms does not define a velocity.
 const TOUCHES: f64 = 1e-9;
-/// A velocity that is seen, beside the one of a fall through the length: it rises by the square of this.
+/// The smallest velocity that matters, relative to that of a fall through the length; the height of its rise
+/// is the square of this.
 const SEEN: f64 = 1e-6;
-/// Points that start this near, m, are meant to touch: the gap is no length of the problem.
+/// Points that start closer than this, m, are meant to touch: their gap is not a length of the problem.
 const NEAR: f64 = 1e-6;
 
 impl Scales {
-    /// Those of a start state; 1 where nothing tells.
+    /// The scales of a start state; 1 if it does not determine them.
     pub fn of(mechanism: &dyn Contacts<f64>, angles: &Angles, state: &State<'_>) -> Self {
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
         let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
@@ -43,7 +44,7 @@ impl Scales {
             let Ok(alone) = ClosedContacts::new(plain, state, &[contact], true) else { continue };
             gaps = gaps.max(gap.abs());
             for (index, row) in alone.partials.row_iter().enumerate() {
-                // What an angular speed gives to the point is an arm.
+                // The velocity of the point per angular speed is a lever arm.
                 if angles.is_angular(index) {
                     length = length.max(row.norm());
                 }
@@ -56,7 +57,7 @@ impl Scales {
             }
         }
         let known = |value: f64| value.is_finite() && value > 0.0;
-        // What moves along a surface tells the length only where nothing approaches.
+        // Motion along a surface defines the length only if nothing approaches.
         let fall = if approach > 0.0 { approach } else { speed }.powi(2) / acceleration;
         if gaps > NEAR.max(TOUCHES * place) {
             length = length.max(gaps);
@@ -64,7 +65,7 @@ impl Scales {
         if !known(length) {
             length = if known(fall) { fall } else { 1.0 };
         }
-        // The faster of falling and going.
+        // The faster of falling and moving.
         let time = (length / acceleration).sqrt().min(length / speed);
         let slow = SEEN * (length * acceleration).sqrt().max(approach);
         Self {

@@ -16,7 +16,7 @@ impl Transition<'_> {
             .reduce(f64::min)
     }
 
-    /// Handles the ends of bounces at this time.
+    /// Handles bounces that end at this time.
     pub(crate) fn on_time(&mut self) -> Result<(), SimulationError> {
         let now = self.front.t;
         let due: Vec<usize> =
@@ -30,7 +30,7 @@ impl Transition<'_> {
         self.look_for_rest()
     }
 
-    /// Takes other inputs.
+    /// Replaces the inputs.
     pub(crate) fn change_inputs(&mut self, inputs: Vec<f64>) -> Result<(), SimulationError> {
         if inputs == self.front.held {
             return Ok(());

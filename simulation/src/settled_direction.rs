@@ -1,4 +1,4 @@
-//! Directions in which slip settles: those in which the accelerations across them are those wanted.
+//! Settled directions of slip: those in which the accelerations perpendicular to them have prescribed values.
 //!
 //! Theory: docs/theory.md, section 17.5.
 
@@ -8,23 +8,23 @@ use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking};
 use crate::phase::Closed;
 
-/// Difference of angles by which derivatives are formed, rad.
+/// Difference of angles for derivatives, rad.
 const TURN: f64 = 1e-5;
-/// Steps of the method of secants at most.
+/// Largest number of secant steps.
 const STEPS: usize = 12;
-/// An angle is found where the product of its last two changes is below this, rad^2: the error that is left is of
-/// this order.
+/// An angle has converged if the product of its last two changes is below this, rad^2: the remaining error is
+/// of this order.
 const FOUND: f64 = 1e-15;
-/// Several angles are found where their next change is expected to be below this, rad.
+/// Several angles have converged if their next change is expected to be below this, rad.
 const NEXT: f64 = 1e-13;
-/// Changes of an angle below this are rounding, rad; and those where accelerations are small differences.
+/// Changes of an angle below this are rounding errors, rad; also where accelerations are small differences.
 const ROUNDING: f64 = 1e-14;
 const COARSE: f64 = 1e-11;
 
-/// Forces for modes.
+/// A function that returns the forces for modes.
 pub(crate) type Solve<'a> = dyn Fn(&[Hold]) -> Result<Forces, Lacking> + 'a;
 
-/// Gives contacts that have settled the directions that follow from the state at a time. `None` where there are none.
+/// Gives settled contacts the directions that follow from the state at a time; `None` if there are none.
 pub(crate) fn settle(
     support: &ClosedContacts,
     closed: &[Closed],
@@ -48,13 +48,13 @@ pub(crate) fn settle(
     turn_until(holds, &places, &mut inverse, &wanted, solve)
 }
 
-/// A vector of length one turned by an angle.
+/// A unit vector rotated by an angle.
 fn turned(d: Vector2<f64>, angle: f64) -> Vector2<f64> {
     let (sin, cos) = angle.sin_cos();
     Vector2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y)
 }
 
-/// The accelerations across the directions of slip of contacts.
+/// The accelerations of contacts perpendicular to their directions of slip.
 pub(crate) fn across(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<DVector<f64>> {
     let found = solve(holds).ok()?.acceleration;
     let mut across = DVector::zeros(places.len());
@@ -65,7 +65,8 @@ pub(crate) fn across(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Opt
     Some(across)
 }
 
-/// The change of the accelerations across the directions of `places` by the angle of each of them.
+/// The derivatives of the accelerations perpendicular to the directions of `places` with respect to their
+/// angles.
 pub(crate) fn slopes(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<DMatrix<f64>> {
     let mut slopes = DMatrix::zeros(places.len(), places.len());
     for (column, &place) in places.iter().enumerate() {
@@ -79,8 +80,9 @@ pub(crate) fn slopes(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Opt
     Some(slopes)
 }
 
-/// Turns the directions of slip of contacts until the accelerations across them are those wanted. `inverse` is nearly
-/// that of the derivative by the angles, and becomes more so: Broyden's method, of one contact that of secants.
+/// Turns the directions of slip of contacts until the accelerations perpendicular to them have the wanted
+/// values. `inverse` is an approximate inverse of the derivative with respect to the angles, which is
+/// improved: Broyden's method, for one contact the secant method.
 pub(crate) fn turn_until(
     holds: &mut [Hold],
     places: &[usize],
@@ -100,7 +102,7 @@ pub(crate) fn turn_until(
     for _ in 0..STEPS {
         let step = -(&*inverse * &left);
         let size = step.amax();
-        // steps that grow lead to other directions with the same accelerations than those that settle
+        // steps that grow lead to other directions with the same accelerations, not to the settled ones
         let grows = last.is_some_and(|last| size > last && size > COARSE);
         if size.is_nan() || size >= 1.0 || grows {
             return None;
@@ -136,7 +138,8 @@ mod tests {
     use crate::contact_problem::Wanted;
     use crate::forces::forces;
 
-    /// Two contacts of one body that slide: the acceleration across the slip of one or of both becomes that wanted.
+    /// Two sliding contacts of one body: the acceleration perpendicular to the slip of one or of both takes
+    /// the wanted value.
     #[test]
     fn a_direction_is_turned_until_the_acceleration_across_it_is_that_wanted() {
         let point = |x: f64, y: f64, z: f64| {
@@ -162,8 +165,8 @@ mod tests {
             let mut holds = directions.map(Hold::Slide);
             let known = across(&holds, &places, &solve).unwrap();
             let inverse = slopes(&holds, &places, &solve).unwrap().try_inverse().unwrap();
-            // both together have the same accelerations along other directions, too, some 0.14 rad away: from as far as
-            // these none are found, and nearer the right ones
+            // both together have the same accelerations along other directions, too, some 0.14 rad away: from
+            // this distance they are not found, and nearer the right ones are
             let near = if places.len() == 1 { 1.0 } else { 0.25 };
             for (by, part) in [(0.05 * near, 1.0), (-0.08 * near, 1.4), (-0.08, 1.4)] {
                 for &place in &places {

@@ -11,11 +11,12 @@ use crate::motion::{Evaluation, Motion};
 use crate::scales::Scales;
 use crate::slip_direction::settle_directions;
 
-/// The direction counts as known from the state where it settles within this part of the time of the problem.
+/// The direction follows from the state if it settles within this part of the time of the problem.
 const SETTLES: f64 = 2.5e-5;
-/// By so much of the speed of the problem, its length over its time, the slip may differ from the settled one.
+/// The allowed difference between slip and settled slip, relative to the speed of the problem (its length
+/// over its time).
 const SETTLED: f64 = 1e-12;
-/// Difference by which the rate of the settled direction is formed, beside the time of the problem.
+/// Time difference for the rate of the settled direction, relative to the time of the problem.
 const AHEAD: f64 = 5e-5;
 /// Difference of angles, rad.
 const TURN: f64 = 1e-5;
@@ -42,7 +43,7 @@ pub(crate) fn settled(
     if candidates.is_empty() {
         return omegas;
     }
-    // The settled directions here and a little ahead.
+    // The settled directions here and a little later.
     let at = |support: &ClosedContacts, holds: &[Hold], rates: Option<&[f64]>| -> Option<Vec<Hold>> {
         let mut trial = closed.to_vec();
         for (place, &i) in candidates.iter().enumerate() {
@@ -75,10 +76,10 @@ pub(crate) fn settled(
     omegas
 }
 
-/// Forces for modes.
+/// A function that returns the forces for modes.
 type Solve<'a> = dyn Fn(&ClosedContacts, &[Hold]) -> Result<Forces, Lacking> + 'a;
 
-/// The time in which the direction of slip of a contact settles; `None` where it does not.
+/// The time constant with which the direction of slip of a contact settles; `None` if it does not.
 fn relaxation(here: &Evaluation, i: usize, solve: &Solve<'_>) -> Option<f64> {
     let Hold::Slide(d) = here.holds[i] else { return None };
     let across = |angle: f64| -> Option<f64> {

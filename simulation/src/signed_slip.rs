@@ -1,11 +1,11 @@
-//! Follows small slip through its end, along the directions that contacts have settled in.
+//! Treats small slip as a signed number through its end, along settled directions.
 //!
 //! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration
-//! across the slip. While s is small the direction settles within the time s / |dh/dphi|, and an explicit
-//! integration would need steps of that length. A settled direction follows from the state: h(phi) = s phi', where
-//! phi' is the rate at which the settled direction turns (docs/theory.md, section 17.5). With s as the signed
-//! component of the slip along this direction, the motion is smooth through the end of slip. Directions of several
-//! contacts depend on each other, and are found together.
+//! perpendicular to the slip. While s is small, the direction settles within the time s / |dh/dphi|, and an
+//! explicit integration would need steps of that length. A settled direction follows from the state: h(phi) =
+//! s phi', where phi' is the rate at which the settled direction turns (docs/theory.md, section 17.5). With s
+//! as the signed component of slip along this direction, the motion is smooth through the end of slip.
+//! Directions of several contacts depend on each other, and are computed together.
 
 use std::sync::Arc;
 
@@ -20,69 +20,73 @@ use crate::phase::{Closed, Turned};
 use crate::settled_direction::{Solve, across, slopes, turn_until};
 use crate::stepper::Tolerances;
 
-/// An explicit integration takes steps of no more than so many times the time in which the direction settles.
+/// The steps of an explicit integration are at most this many times the time constant with which the
+/// direction settles.
 pub(crate) const EXPLICIT: f64 = 6.0;
-/// A direction that settles this much faster than its slip ends is followed to that end.
+/// A direction that settles this much faster than slip ends is followed to that end.
 const FASTER: f64 = 4.0;
-/// Difference of times by which accelerations are differentiated, beside the time ahead.
+/// Time difference for derivatives of accelerations, relative to the time ahead.
 const AHEAD: f64 = 1e-3;
-/// Slip that differs from its settled direction by so many times what a step may err has settled.
+/// Slip has settled if it differs from its settled direction by at most this many times the allowed error of
+/// a step.
 const SETTLED: f64 = 10.0;
-/// The cosine of the angle between slip and its settled direction, at least.
+/// Least cosine of the angle between slip and its settled direction.
 const NEAR: f64 = 0.9;
-/// Rounds in which directions and rates of turning are found, each from the other.
+/// Number of alternating computations of directions and rates of turning.
 const ROUNDS: usize = 2;
-/// Turns of several directions that change accelerations by less than this part of what others do are none that
-/// slip of the bodies can make.
+/// Turns of several directions that change accelerations by less than this part of others are not possible
+/// motions of the bodies.
 const BODIES: f64 = 1e-7;
-/// Iterations of eigenvalues and singular values at most.
+/// Largest number of iterations for eigenvalues and singular values.
 const ITERATIONS: usize = 200;
 
 /// Contacts whose directions of slip follow from the state.
 #[derive(Clone, Debug)]
 pub(crate) struct Settled {
     pub slips: Vec<SettledSlip>,
-    /// nearly the inverse of the derivative of the accelerations across the directions by their angles
+    /// an approximate inverse of the derivative of the perpendicular accelerations with respect to the angles
     pub inverse: Arc<DMatrix<f64>>,
-    /// time in which the directions settle, s
+    /// time constant with which the directions settle, s
     pub relaxation: f64,
-    /// the time ahead for which they were looked for, s: other directions settle in a time that is not short beside it
+    /// the time ahead for which they were computed, s: the time constants of other directions are not short
+    /// compared with it
     pub reach: f64,
-    /// whether slip across them is as little as the tolerances allow
+    /// whether slip perpendicular to them is within the tolerances
     pub has_settled: bool,
 }
 
-/// The settled direction of one of them.
+/// The settled direction of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SettledSlip {
-    /// place among the closed contacts
+    /// index among the closed contacts
     pub place: usize,
     pub direction: Vector2<f64>,
-    /// how fast it turns: see [`crate::phase::Turning`]
+    /// its turning: see [`crate::phase::Turning`]
     pub rates: [f64; 3],
-    /// slip across the direction, m/s
+    /// slip perpendicular to the direction, m/s
     pub across: f64,
 }
 
-/// What settled directions are looked for with.
+/// The input of the search for settled directions.
 pub(crate) struct Search<'a> {
-    /// the places of the contacts among the closed ones
+    /// the indices of the contacts among the closed ones
     pub asked: &'a [usize],
-    /// times to the end of each slip if its rate stayed, s
+    /// times to the end of each slip at its present rate, s
     pub left: &'a [Option<f64>],
-    /// rates at which each direction turned so far
+    /// previous rates at which each direction turned
     pub before: &'a [Turned],
-    /// a time ahead, s: directions that settle in a longer time are integrated
+    /// a time ahead, s: directions with longer time constants are integrated
     pub reach: f64,
-    /// what a step may err
+    /// the allowed error of a step
     pub tolerances: Tolerances,
 }
 
 /// Closed contacts and the modes that follow from their velocities.
 type Beside = (ClosedContacts, Vec<Hold>);
 
-/// The contacts whose directions of slip settle fast, and whether they have settled. Of those that have not the fastest
-/// decides how long steps can be, and those that settle as slowly are integrated. `None` where there is none.
+/// The contacts whose directions of slip settle fast, and whether they have settled. Of those that have not,
+/// the fastest determines the length of steps, and those as slow are integrated. `None` if there is no such
+/// contact.
 pub(crate) fn settled(
     motion: &Motion<'_>,
     start: (f64, &[f64]),
@@ -125,7 +129,8 @@ fn together(
     let solve = |holds: &[Hold]| solved(motion, &here.support, holds);
     let ends = places.iter().filter_map(|&place| search.left[place]);
     let ahead_by = AHEAD * ends.fold(reach, f64::min) + 64.0 * f64::EPSILON * t.abs();
-    // The change of the accelerations across directions by time. Those of other contacts are those of their own slip.
+    // The time derivative of the perpendicular accelerations. For other contacts they are perpendicular to
+    // their own slip.
     let change = |holds: &[Hold]| -> Option<DVector<f64>> {
         let rates = rates_with(here, motion, y.len(), &solve(holds).ok()?);
         let at = |by: f64| -> Option<DVector<f64>> {
@@ -151,7 +156,7 @@ fn together(
         slips.push(SettledSlip { place, direction, rates: turns.rates[k], across });
         sizes.push(slip.norm());
     }
-    // Where nothing moves other directions may have no acceleration across them either.
+    // If nothing moves, other directions may have no perpendicular acceleration either.
     let relaxation = relaxation(&turns.slopes, &turns.along, &sizes, ahead_by);
     let has_settled = relaxation.is_some() && !off.contains(&true);
     if relaxation.is_none() {
@@ -164,16 +169,17 @@ fn together(
     ))
 }
 
-/// The time in which the last deviations of directions settle that an explicit integration has to follow: the least;
-/// `None` where one grows. With phi_i' = h_i / s_i they obey phi' = S^-1 H phi, as far as the bodies can make them:
-/// all slip that a turn of friction brings lies in the range of the change of accelerations in fixed directions.
+/// The least time constant of deviations of directions that an explicit integration has to resolve; `None` if
+/// a deviation grows. With phi_i' = h_i / s_i they obey phi' = S^-1 H phi, restricted to possible motions of
+/// the bodies: all slip caused by turns of friction lies in the range of the derivatives of accelerations at
+/// fixed directions.
 fn relaxation(slopes: &DMatrix<f64>, along: &DVector<f64>, slips: &[f64], soon: f64) -> Option<f64> {
     if let [slip] = slips {
         return (slopes[(0, 0)] < 0.0).then(|| slip / -slopes[(0, 0)]);
     }
     let mut rates = slopes.clone();
     for (i, slip) in slips.iter().enumerate() {
-        // Slip that begins has the sizes that it will have soon.
+        // Beginning slip takes the size that it will have shortly.
         let size = if *slip > 0.0 { *slip } else { (along[i] * soon).max(f64::MIN_POSITIVE) };
         rates.column_mut(i).unscale_mut(size);
     }
@@ -194,8 +200,9 @@ fn relaxation(slopes: &DMatrix<f64>, along: &DVector<f64>, slips: &[f64], soon: 
     eigenvalues.iter().all(|value| value.re < 0.0).then(|| fastest.recip())
 }
 
-/// By how much the slip across a settled direction differs from what it should be at a time, beside what a step may err:
-/// the error that is left by a rate of turning which was taken to be a polynomial.
+/// The difference of the slip perpendicular to a settled direction from its expected value at a time,
+/// relative to the allowed error of a step: the error of a rate of turning that is approximated by a
+/// polynomial.
 pub(crate) fn inconsistent(
     closed: &[Closed],
     (t, there): (f64, &Evaluation),
@@ -212,14 +219,14 @@ pub(crate) fn inconsistent(
     most
 }
 
-/// Forces in these modes, with the coefficients of friction of these velocities.
+/// Forces in these modes, with the coefficients of friction at these velocities.
 fn solved(motion: &Motion<'_>, support: &ClosedContacts, holds: &[Hold]) -> Result<Forces, Lacking> {
     let mut mu = Vec::with_capacity(holds.len());
     motion.rub(support, holds, &mut mu).map_err(|_| Lacking::Common)?;
     forces(support, holds, &mu, None, Wanted::Motion)
 }
 
-/// The rates of coordinates and speeds here under other forces.
+/// The rates of coordinates and speeds in this state under other forces.
 fn rates_with(here: &Evaluation, motion: &Motion<'_>, count: usize, forces: &Forces) -> Vec<f64> {
     let mut rates = here.rates[..count].to_vec();
     let n = motion.mechanism.count(ComponentKind::Coordinate);
@@ -230,7 +237,7 @@ fn rates_with(here: &Evaluation, motion: &Motion<'_>, count: usize, forces: &For
     rates
 }
 
-/// The closed contacts a short time from here, by these rates.
+/// The closed contacts a short time later, by these rates.
 fn at_time(
     motion: &Motion<'_>,
     (t, y): (f64, &[f64]),
@@ -247,7 +254,7 @@ fn at_time(
     Some((support, holds))
 }
 
-/// The polynomial of the rate from now on, by what it is now and was before.
+/// The polynomial of the rate from now on, from its present and previous values.
 fn extrapolated(t: f64, rate: f64, before: &Turned) -> [f64; 3] {
     let slope = |(t0, rate0): (f64, f64), (t1, rate1): (f64, f64)| (rate1 - rate0) / (t1 - t0);
     match before {
@@ -255,7 +262,7 @@ fn extrapolated(t: f64, rate: f64, before: &Turned) -> [f64; 3] {
         [Some(first), Some(second)] => {
             let (last, earlier) = (slope(*first, (t, rate)), slope(*second, *first));
             let bend = (last - earlier) / (t - second.0);
-            // Newton's form about now and the time before.
+            // Newton's form at the present and previous times.
             [rate, last + bend * (t - first.0), bend]
         }
         [Some(first), None] => [rate, slope(*first, (t, rate)), 0.0],
@@ -263,11 +270,12 @@ fn extrapolated(t: f64, rate: f64, before: &Turned) -> [f64; 3] {
     }
 }
 
-/// Settled directions here, and how they turn.
+/// Settled directions in a state, and their turning.
 struct Turns {
     /// the modes with these directions
     holds: Vec<Hold>,
-    /// the change of the accelerations across the directions by their angles, and nearly its inverse
+    /// the derivatives of the perpendicular accelerations with respect to the angles, and an approximate
+    /// inverse
     slopes: DMatrix<f64>,
     inverse: DMatrix<f64>,
     /// the accelerations along the directions
@@ -275,8 +283,8 @@ struct Turns {
     rates: Vec<[f64; 3]>,
 }
 
-/// Finds settled directions here. h(phi) = s omega holds all the time, so that with h' the change of h at fixed directions
-/// (dh/dphi) omega + h' = s' omega + s omega'.
+/// Computes settled directions in a state. h(phi) = s omega holds at all times, so with the derivative h' of
+/// h at fixed directions (dh/dphi) omega + h' = s' omega + s omega'.
 fn turning(
     here: &Evaluation,
     places: &[usize],
@@ -287,7 +295,7 @@ fn turning(
 ) -> Option<Turns> {
     let m = places.len();
     let mut holds = here.holds.clone();
-    // At first the rate is the last one known, for slip without a settled direction has its own rates.
+    // The first guess is the last known rate, since the rates of slip without a settled direction differ.
     let mut rates: Vec<[f64; 3]> =
         places.iter().map(|&place| [before[place][0].map_or(0.0, |(_, rate)| rate), 0.0, 0.0]).collect();
     let mut found = None;
@@ -319,7 +327,7 @@ fn turning(
     Some(Turns { holds, slopes, inverse, along, rates })
 }
 
-/// The inverse of a matrix, without what turns of friction do that the bodies do not feel.
+/// The inverse of a matrix, restricted to turns of friction that affect the bodies.
 fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     if !matrix.iter().all(|value| value.is_finite()) {
         return None;
@@ -332,7 +340,7 @@ fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     svd.pseudo_inverse(least).ok()
 }
 
-/// The error of the slip of a contact that a step may have, m/s.
+/// The allowed error of the slip of a contact in a step, m/s.
 fn allowed(support: &ClosedContacts, place: usize, speeds: &[f64], tolerances: &Tolerances) -> f64 {
     tolerances.absolute + tolerances.relative * support.velocity_size(place, speeds)
 }
@@ -342,7 +350,7 @@ mod tests {
     use super::*;
     use crate::phase::Turning;
 
-    /// Rates that are a parabola of the time go on as that parabola.
+    /// A rate that is a parabola in time is extrapolated exactly.
     #[test]
     fn rates_go_on_as_the_parabola_through_the_last_three() {
         let rate = |t: f64| 2.0 - 3.0 * t + 5.0 * t * t;

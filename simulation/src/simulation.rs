@@ -1,4 +1,4 @@
-//! [`Simulation`]: a motion from a start state on.
+//! [`Simulation`]: a motion from a start state.
 
 use std::collections::VecDeque;
 
@@ -26,23 +26,23 @@ use crate::{Drive, EnergyAccount, ErrorKind, Event, EventKind, Options, Simulati
 #[derive(Clone)]
 pub struct Simulation<'m> {
     mechanism: &'m dyn Contacts<f64>,
-    /// what turns of the mechanism
+    /// the angular speeds and coordinates
     angles: Angles,
-    /// friction of rolling and spinning
+    /// torques of rolling and spinning friction
     torques: Vec<Torque>,
     pub(crate) options: Options,
-    /// the surfaces of each contact; none where a contact has no gap
+    /// the surfaces of each contact; `None` for a contact without a gap
     surfaces: Vec<Option<Pair>>,
     start: f64,
     pub(crate) front: Front,
     /// the step that led to the front, and the modes during it
     pub(crate) step: Option<(Step, Modes)>,
-    /// events that were not yet asked for
+    /// events that have not been returned yet
     pub(crate) queue: VecDeque<Event>,
-    /// the time asked for, and the state then
+    /// the requested time, and the state then
     pub(crate) view: (f64, Vec<f64>),
     pub(crate) failed: Option<SimulationError>,
-    /// the smooth parts, where they are kept
+    /// the smooth parts, if they are recorded
     parts: Option<Parts>,
 }
 
@@ -56,29 +56,29 @@ impl std::fmt::Debug for Simulation<'_> {
     }
 }
 
-/// What is said of a mechanism that does not tell the relative rotation at a contact.
+/// The message about a mechanism that does not provide the relative rotation at a contact.
 const NO_ROTATION: &str = "it has rolling or spinning friction, but the equations of the mechanism do not hold the relative rotation of the two bodies there: state `rolling: 0` or `spinning: 0`, or more, in the surface of this contact in the model, and derive it anew";
 
-/// Numbers of contacts and their forces (n, t, s), N.
+/// Indices of contacts and their forces (n, t, s), N.
 pub type ContactForces = Vec<(usize, Vector3<f64>)>;
 
-/// How far [`Simulation::advance`] came.
+/// The result of [`Simulation::advance`].
 #[derive(Clone, Debug)]
 pub enum Progress {
-    /// An event, not later than the time asked for.
+    /// An event, not later than the requested time.
     Event(Event),
-    /// The time asked for: the simulation's state is the state then.
+    /// The requested time is reached: the state of the simulation is that at this time.
     Reached,
 }
 
 impl<'m> Simulation<'m> {
-    /// A simulation that begins in this state. Bodies that touch and approach there collide at once; bodies
-    /// that touch and do not approach are in contact.
+    /// A simulation that starts in this state. Touching bodies that approach collide immediately; other
+    /// touching bodies are in contact.
     ///
     /// # Errors
     ///
-    /// An option or the state is wrong: a surface is missing or impossible, a contact begins with a negative
-    /// gap, the mechanism cannot be evaluated in the state, or the first sample of the inputs is not
+    /// An option or the state is invalid: a surface is missing or impossible, a contact starts with a
+    /// negative gap, the mechanism cannot be evaluated in the state, or the first sample of the inputs is not
     /// finite.
     pub fn new(
         mechanism: &'m dyn Contacts<f64>,
@@ -114,7 +114,7 @@ impl<'m> Simulation<'m> {
             failed: None,
             parts: None,
         };
-        // The inputs of the first sample decide what contacts do at the start.
+        // The inputs of the first sample determine the modes of the contacts at the start.
         let inputs = simulation.sampled_inputs()?;
         simulation.take(|transition| {
             if let Some(inputs) = inputs {
@@ -130,7 +130,7 @@ impl<'m> Simulation<'m> {
         WithTorques::new(self.mechanism, &self.torques)
     }
 
-    /// A transition from the front.
+    /// A transition that starts from the front.
     pub(crate) fn transition(&self) -> Transition<'_> {
         Transition {
             mechanism: self.with_torques(),
@@ -145,8 +145,8 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Makes a transition and takes its front and its events. Of one that fails only the step to its event is
-    /// taken, if it came so far.
+    /// Performs a transition and accepts its front and its events. If it fails, only the step up to its event
+    /// is accepted, if there is one.
     pub(crate) fn take(
         &mut self,
         change: impl FnOnce(&mut Transition<'_>) -> Result<(), SimulationError>,
@@ -211,9 +211,9 @@ impl<'m> Simulation<'m> {
     /// # Errors
     ///
     /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and
-    /// events remain available: advance to an earlier time. A motion that ends by itself does so with the
-    /// event [`crate::EventKind::Singular`], and has no later state: [`ErrorKind::Singular`]. A time that is not finite is refused, and
-    /// nothing changes.
+    /// events remain available: advance to an earlier time. A motion that ends by itself returns the event
+    /// [`crate::EventKind::Singular`]; advancing further is the error [`ErrorKind::Singular`]. A time that is
+    /// not finite is refused, and nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
         if until.is_nan() || until == f64::INFINITY {
             return Err(self.transition().error(
@@ -244,13 +244,13 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Advances to a time (s) and returns the events until then. A motion that ends before
-    /// ([`crate::EventKind::Singular`], the last event then) is followed to its end.
+    /// Advances to a time (s) and returns the events until then. If the motion ends earlier (with
+    /// [`crate::EventKind::Singular`] as the last event), it is simulated up to its end.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::advance`]. The events before the error are lost; use [`Simulation::advance`] to keep
-    /// them.
+    /// Those of [`Simulation::advance`]. The events before the error are lost; use [`Simulation::advance`] to
+    /// keep them.
     pub fn advance_to(&mut self, time: f64) -> Result<Vec<Event>, SimulationError> {
         let mut events = Vec::new();
         loop {
@@ -267,7 +267,7 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Looks at the state at a time in the last step.
+    /// Evaluates the state at a time in the last step.
     fn look(&mut self, time: f64) {
         let state = match &self.step {
             _ if time >= self.front.t => Some(self.front.y.clone()),
@@ -280,7 +280,7 @@ impl<'m> Simulation<'m> {
         if let Some(state) = state {
             self.view = (time.min(self.front.t), state);
         }
-        // Integration lets quaternions drift.
+        // Quaternions drift during a step.
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let _ = self.mechanism.normalise(&mut self.view.1[..n]);
     }
@@ -306,12 +306,13 @@ impl<'m> Simulation<'m> {
         &self.front.held
     }
 
-    /// Whether nothing moves any more, since the last event: everything that touches sticks and every rate is zero.
+    /// Whether the mechanism is at rest since the last event: all closed contacts stick, and every rate is
+    /// zero.
     pub fn is_at_rest(&self) -> bool {
         self.front.resting
     }
 
-    /// Looks at the end of the last step, which is as far as the motion was followed.
+    /// Moves the state to the end of the last step, the latest time that was computed.
     pub(crate) fn look_at_front(&mut self) {
         self.look(self.front.t);
     }
@@ -322,13 +323,13 @@ impl<'m> Simulation<'m> {
         self.phase_now(contact).filter(|_| own)
     }
 
-    /// Whether the bodies roll on each other against rolling friction, at [`Simulation::time`]: `Slide` where they do,
-    /// `Stick` where it holds them. `None` where the contact has no rolling friction.
+    /// Whether the bodies roll relative to each other against rolling friction, at [`Simulation::time`]:
+    /// `Slide` if they do, `Stick` if it holds them. `None` if the contact has no rolling friction.
     pub fn rolling_phase(&self, contact: usize) -> Option<ContactPhase> {
         self.phase_of_torque(contact, Turning::Rolling)
     }
 
-    /// As [`Simulation::rolling_phase`], of spinning about the normal.
+    /// Like [`Simulation::rolling_phase`], for rotation about the normal.
     pub fn spinning_phase(&self, contact: usize) -> Option<ContactPhase> {
         self.phase_of_torque(contact, Turning::Spinning)
     }
@@ -340,7 +341,8 @@ impl<'m> Simulation<'m> {
         self.phase_now(torque)
     }
 
-    /// The phase of a contact or torque at [`Simulation::time`]: within a step its modes were those before the event.
+    /// The phase of a contact or torque at [`Simulation::time`]; within a step the modes are those before its
+    /// event.
     fn phase_now(&self, index: usize) -> Option<ContactPhase> {
         let phase = self.front.phases.get(index)?;
         if let Some((_, modes)) = &self.step
@@ -368,13 +370,13 @@ impl<'m> Simulation<'m> {
         Ok((forces, unique))
     }
 
-    /// Torques of rolling and spinning friction at [`Simulation::time`], along n, t, s of the contact bases, N m, on
-    /// the bodies that strike; of closed contacts that have such friction. Whether they are unique is told with the
-    /// forces.
+    /// Torques of rolling and spinning friction at [`Simulation::time`], along n, t, s of the contact bases,
+    /// N m, on the striking bodies, for closed contacts with such friction. They are unique if the forces
+    /// are.
     ///
     /// # Errors
     ///
-    /// They cannot be evaluated.
+    /// The torques cannot be evaluated.
     pub fn contact_torques(&self) -> Result<ContactForces, SimulationError> {
         let mut torques = ContactForces::new();
         let all = self.with_torques();
@@ -396,7 +398,7 @@ impl<'m> Simulation<'m> {
         if let Some((_, modes)) = &self.step
             && self.view.0 < self.front.t
         {
-            // The front may be beyond an event: within the step its modes were those before.
+            // The front may be after an event: within the step the modes were those before it.
             closed.clone_from(&modes.closed);
             transition.front.held.clone_from(&modes.held);
             transition.front.resting = modes.resting;
@@ -432,13 +434,13 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// From now on keeps the smooth parts of the motion: [`Simulation::take_parts`].
+    /// From now on records the smooth parts of the motion: [`Simulation::take_parts`].
     pub fn keep_parts(&mut self) {
         self.parts.get_or_insert_default();
     }
 
-    /// The smooth parts since they were kept or last taken, in order. The last one may end after the time that was asked
-    /// for.
+    /// Returns the smooth parts since they were recorded or last returned, in order. The last one may end
+    /// after the requested time.
     pub fn take_parts(&mut self) -> Vec<SmoothPart> {
         self.parts.as_mut().map_or_else(Vec::new, Parts::take)
     }

@@ -1,4 +1,4 @@
-//! Lets contacts that are struck together answer all at once, by their stiffnesses.
+//! Solves simultaneous impacts of several contacts by their stiffnesses.
 
 use hodograph::{ComponentKind, Law, State};
 use nalgebra::{DMatrix, DVector};
@@ -11,8 +11,8 @@ use crate::transition::Transition;
 use crate::{ErrorKind, EventKind, Share, SimulationError, SimultaneousCollision};
 
 impl Transition<'_> {
-    /// Solves the impact of the touching contacts that `first` is coupled with, and says so; the speeds
-    /// after. `None` where it is coupled with none.
+    /// Solves the impact of the touching contacts that are coupled with `first`, and records it; returns the
+    /// speeds after it. `None` if `first` is coupled with none.
     pub(crate) fn strike_together(
         &mut self,
         touching: &[usize],
@@ -45,7 +45,7 @@ impl Transition<'_> {
         let coupled = DMatrix::from_fn(m, m, |a, b| support.coupled[(3 * places[a], 3 * places[b])]);
         let mut velocity = DVector::zeros(m);
         for (rate, &place) in velocity.iter_mut().zip(&places) {
-            // A contact that lasts has no normal velocity but rounding.
+            // The normal velocity of a lasting contact is a rounding error.
             let rounding = 1e-13 * support.velocity_size(place, &speeds);
             let rounding = self.unseen(&support, place, &speeds, rounding)?;
             let known = support.velocity[3 * place];

@@ -1,4 +1,4 @@
-//! One of the impacts at a time: of one contact by the exact solver, or of several at once.
+//! Solves one of the impacts at a time: that of one contact by the exact solver, or that of several at once.
 
 use hodograph::{CollisionError, CollisionOutcome, ComponentKind, State, Surface};
 
@@ -12,11 +12,11 @@ pub(crate) struct Hit {
     pub kind: HitKind,
     pub before: Vec<f64>,
     pub after: Vec<f64>,
-    /// the contacts that would go on bouncing below the tolerance, and for how long, s
+    /// the contacts that would continue to bounce below the tolerance, and for how long, s
     pub bounces: Vec<(usize, f64)>,
 }
 
-/// What struck.
+/// The kind of an impact.
 pub(crate) enum HitKind {
     One(usize, Box<CollisionOutcome<f64>>),
     /// several at once, and the change of kinetic energy, J
@@ -42,7 +42,7 @@ impl Hit {
 }
 
 impl Transition<'_> {
-    /// The impact of these contacts; `faded` ones end without restitution.
+    /// The impact of these contacts; `faded` ones have no restitution.
     pub(crate) fn hit(
         &self,
         contacts: &[usize],
@@ -55,8 +55,8 @@ impl Transition<'_> {
         }
     }
 
-    /// The change of kinetic energy from speeds to others, J. Where motion is prescribed it is not the work of
-    /// the contacts: (24).
+    /// The change of kinetic energy between two sets of speeds, J. If motion is prescribed, it is not the
+    /// work of the contacts: (24).
     pub(crate) fn energy_change(&self, before: &[f64], after: &[f64]) -> Result<f64, SimulationError> {
         let kinetic = |speeds| self.mechanism.kinetic_energy(&State { speeds, ..self.here() });
         let change = kinetic(after).and_then(|after| Ok(after - kinetic(before)?));
@@ -90,8 +90,8 @@ impl Transition<'_> {
         }
     }
 
-    /// The rule of chatter (docs/theory.md, section 17.7): the time for which a contact would go on bouncing if
-    /// its next bounce is lower than the tolerance and it is pressed together, s.
+    /// The rule of chatter (docs/theory.md, section 17.7): the time for which a contact would continue to
+    /// bounce if its next bounce is lower than the tolerance and it is pressed together, s.
     pub(crate) fn last_bounce(
         &self,
         contact: usize,
@@ -105,7 +105,7 @@ impl Transition<'_> {
         Ok(if low { pair.and_then(|pair| pair.bounces_for(before, rebound, -pull)) } else { None })
     }
 
-    /// Whether a contact that leaves with this speed is pressed down and rises by less than the tolerance.
+    /// Whether a contact that separates with this speed is pressed down and rises by less than the tolerance.
     pub(crate) fn is_low(
         &self,
         contact: usize,
@@ -119,7 +119,7 @@ impl Transition<'_> {
         pull < 0.0 && rebound * rebound / (-2.0 * pull) < self.options.absolute_tolerance
     }
 
-    /// The surface of a contact that strikes with this speed of approach, as impacts have it.
+    /// The surface of a contact in an impact with this speed of approach.
     pub(crate) fn surface_in_impact(
         &self,
         contact: usize,
@@ -130,8 +130,8 @@ impl Transition<'_> {
             .map_err(|message| self.error(Some(contact), ErrorKind::BadOption(message)))
     }
 
-    /// The normal acceleration of a contact without its own force, while the others that last keep their
-    /// modes.
+    /// The normal acceleration of a contact without its own force, while the other lasting contacts keep
+    /// their modes.
     fn pull(&self, contact: usize, speeds: &[f64]) -> Result<f64, SimulationError> {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let mut y = self.front.y.clone();

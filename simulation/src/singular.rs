@@ -1,8 +1,8 @@
-//! Ends a motion where the point of a closed contact is no longer determined by the coordinates.
+//! Ends a motion if the contact point of a closed contact is no longer determined by the coordinates.
 //!
-//! The lowest point of a disc is undefined where the disc lies flat; the point at which it touches runs around
-//! its rim ever faster before, or changes sides at once. A motion of a single contact ends there: what would
-//! follow is the impact of a whole face (docs/theory.md, section 17.16).
+//! The lowest point of a disc is undefined when the disc lies flat; before, the contact point runs around the
+//! rim ever faster, or it jumps to the other side. A motion with a single contact ends there: the impact of a
+//! whole face would follow (docs/theory.md, section 17.16).
 
 use hodograph::{ComponentKind, State, StateError};
 
@@ -12,16 +12,16 @@ use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{EventKind, SimulationError};
 
-/// Steps this much shorter than the longest one so far are looked at.
+/// Steps that are shorter than the longest one so far by this factor are examined.
 const SHORT: f64 = 1e-2;
-/// The point of a contact is undefined where the tolerances of the coordinates change its partial velocities
-/// by this part of them.
+/// The contact point is undefined if changes of the coordinates by their tolerances change its partial
+/// velocities by this part.
 const CHANGED: f64 = 1e-2;
-/// Halvings of a step that tell a jump from a turn.
+/// Number of bisections of a step that distinguish a jump from a rotation.
 const HALVINGS: usize = 30;
 
 impl Transition<'_> {
-    /// The contact at which the motion ends with a step that was made.
+    /// The contact at which the motion ends in this step, if any.
     pub(crate) fn singular(&self, closed: &[Closed], step: &Step) -> Option<usize> {
         let longest = self.front.steps.2;
         if step.h > SHORT * longest {
@@ -35,8 +35,8 @@ impl Transition<'_> {
         self.undefined(closed, self.front.t, &self.front.y, None)
     }
 
-    /// The closed contact whose point the coordinates do not determine in a state, or whose point jumps on the
-    /// way from the state before.
+    /// The closed contact whose point the coordinates do not determine in a state, or whose point jumps
+    /// between the previous state and this one.
     fn undefined(&self, closed: &[Closed], t: f64, y: &[f64], before: Option<&[f64]>) -> Option<usize> {
         let motion = self.motion(&[]);
         let own = |contact: &usize| self.mechanism.torque(*contact).is_none();
@@ -45,8 +45,8 @@ impl Transition<'_> {
         })
     }
 
-    /// By which part of them the partial velocities of a contact change within the tolerances of the
-    /// coordinates, or jump on the way from the state before.
+    /// The relative change of the partial velocities of a contact under changes of the coordinates by their
+    /// tolerances, or in a jump since the previous state.
     fn changes(
         &self,
         motion: &Motion<'_>,
@@ -72,7 +72,7 @@ impl Transition<'_> {
         if let Some(before) = before {
             let (mut from, mut to) = (motion.split(before).0.to_vec(), q.to_vec());
             let (mut first, mut last) = (partials(&from)?, here.clone());
-            // A change that is left after all halvings is a jump.
+            // A change that remains after all bisections is a jump.
             for _ in 0..HALVINGS {
                 if part(&first, &last) <= CHANGED {
                     break;
@@ -87,7 +87,7 @@ impl Transition<'_> {
             }
             most = part(&first, &last);
         }
-        // Two directions: a point may be determined along one of them.
+        // Two directions, since a point may be determined along one of them.
         for sign in [1.0, -1.0] {
             let moved: Vec<f64> = q
                 .iter()
@@ -102,15 +102,15 @@ impl Transition<'_> {
         Ok(most)
     }
 
-    /// Ends the motion at a contact, here.
+    /// Ends the motion at a contact at the present time.
     pub(crate) fn end_at(&mut self, contact: usize) -> Result<(), SimulationError> {
         self.front.ended = Some(contact);
         self.push(Some(contact), EventKind::Singular);
         Ok(())
     }
 
-    /// Ends the motion with a step at whose end the point of a contact is undefined. Nothing is projected onto
-    /// the velocity of a point that is not determined.
+    /// Ends the motion with a step at whose end the contact point is undefined. Nothing is projected, since
+    /// the velocity of such a point is undefined.
     pub(crate) fn end_with(&mut self, contact: usize, step: &Step) -> Result<(), SimulationError> {
         let modes = self.modes();
         self.front.t = step.t + step.h;

@@ -1,10 +1,10 @@
 //! The direction of very small slip, computed from the state instead of by integration.
 //!
 //! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration
-//! across the slip. While s is small the direction settles within the time s / |dh/dphi|, and an explicit
-//! integration would need steps of that length. A settled direction follows from the state: h(phi) = s omega,
-//! where omega is the rate at which the settled direction turns. The error is of second order in omega s /
-//! |dh/dphi|.
+//! perpendicular to the slip. While s is small, the direction settles within the time s / |dh/dphi|, and an
+//! explicit integration would need steps of that length. A settled direction follows from the state: h(phi) =
+//! s omega, where omega is the rate at which the settled direction turns. The error is of second order in
+//! omega s / |dh/dphi|.
 
 use nalgebra::Vector2;
 
@@ -14,7 +14,8 @@ use crate::forces::{Forces, Hold, Lacking};
 use crate::mode_selection::begin_along;
 use crate::phase::{Closed, mus};
 
-/// The modes of contacts with the directions that follow from the state: `omega` of those that have settled.
+/// The modes of contacts with the directions that follow from the state; `omega` holds the rates of the
+/// settled ones.
 pub(crate) fn settle_directions(
     support: &ClosedContacts,
     closed: &[Closed],
@@ -38,8 +39,8 @@ pub(crate) fn settle_directions(
     Some(())
 }
 
-/// The modes of contacts that slip together, with so little acceleration that differences of it do not tell their
-/// directions; `None` where they have more.
+/// The modes of contacts that slip together with such small accelerations that their directions cannot be
+/// computed from differences; `None` if the accelerations are larger.
 fn slow(
     support: &ClosedContacts,
     closed: &[Closed],

@@ -1,20 +1,22 @@
-//! The end of slip. In three dimensions no smooth function changes its sign there (docs/theory.md, section
+//! The end of slip. In three dimensions slip does not change its sign smoothly there (docs/theory.md, section
 //! 17.5).
 //!
 //! Close to the end only the slip changes: with dt = s dtau, phi' = h(phi) and (ln s)' = g(phi), where g and
-//! h are the tangential accelerations along and across the slip. If phi tends to a direction with g < 0, slip
-//! ends, after a time that these equations give; if g becomes positive, slip grows again and passes zero by. Slip that
-//! turns into a jam (section 17.6) ends there: its impact without collision takes what is left of it.
+//! h are the accelerations along the slip and perpendicular to it. If phi tends to a direction with g < 0,
+//! slip ends, after a time that these equations give; if g becomes positive, slip grows again and misses
+//! zero. Slip that turns into a jam (section 17.6) ends there: its impact without collision removes the
+//! remaining slip.
 
 use hodograph::ContactError;
+use hodograph::generated::hypot;
 use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::contact_problem::Wanted;
-use crate::forces::{Hold, Lacking, forces};
+use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::motion::{DIRECTION, Evaluation};
 
-/// What becomes of slip.
+/// The future of slip.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Fate {
     /// It ends after this time, s.
@@ -23,18 +25,19 @@ pub(crate) enum Fate {
     PassesBy,
 }
 
-/// Slip that ends within this part of the time of the problem is followed to its end by itself.
+/// Slip that ends within this part of the time of the problem is followed to its end separately.
 pub(crate) const ENDING: f64 = 5e-9;
 const STEPS: usize = 4000;
-/// Difference of angles by which the slope of h is formed, rad.
+/// Difference of angles for the slope of h, rad.
 const TURN: f64 = 1e-5;
 /// That difference is divided by ten at most this many times.
 const LESS: usize = 5;
-/// So near its limit the direction counts as settled, rad: what is left of the time of slip is less than
-/// [`ENDING`], and its error of first order in this.
+/// The direction counts as settled at this distance from its limit, rad: the remaining time of slip is less
+/// than [`ENDING`], and its error of first order in this.
 const SETTLED: f64 = 1e-6;
 
-/// Follows slip of the contact with this place to its end, all else unchanged; an end counts within this time.
+/// Follows the slip of the contact with this index to its end, with all else constant; only an end within
+/// this time counts.
 pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: usize, within: f64) -> Fate {
     let slip = support.slip(place);
     let start = slip.norm();
@@ -47,7 +50,7 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
         let a = Vector2::new(a[3 * place + 1], a[3 * place + 2]);
         Ok((a.dot(&d), d.x * a.y - d.y * a.x))
     };
-    // Whether it has no rates because it jams.
+    // Whether there are no rates because the contact jams.
     let without = |lacking: Lacking, time: f64| match lacking {
         Lacking::Contact(at, ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. })
             if at == place && time < within =>
@@ -62,7 +65,7 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
             Ok(rates) => rates,
             Err(lacking) => return without(lacking, time),
         };
-        // A contact that nearly jams has forces in directions close by alone.
+        // A contact that nearly jams has forces only in nearby directions.
         let turns = std::iter::successors(Some(TURN), |turn| Some(0.1 * turn)).take(LESS);
         let slope = turns.into_iter().find_map(|turn| {
             let (before, after) = (rates(phi - turn).ok()?, rates(phi + turn).ok()?);
@@ -76,14 +79,14 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
         };
         if size < -16.0 || (slope < 0.0 && h.abs() <= -SETTLED * slope) {
             let end = time - start * size.exp() / g;
-            // Rates beside a jam are beyond all bounds, and this method does not follow them.
+            // Rates near a jam are unbounded; this method does not follow them.
             return if g < 0.0 && end < within { Fate::Ends(end) } else { Fate::PassesBy };
         }
         if size > 0.7 {
             return Fate::PassesBy;
         }
-        // Runge and Kutta's method of order 4, in steps short beside all rates: it is not stable in longer
-        // ones where the direction settles fast.
+        // The Runge-Kutta method of order 4 with steps that are short compared with all rates: with longer
+        // ones it is unstable where the direction settles fast.
         let d = 0.1 / (g.abs() + h.abs() + slope.abs()).max(f64::MIN_POSITIVE);
         let mut stage = || {
             let b = rates(phi + 0.5 * d * h)?;
@@ -103,38 +106,51 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
     Fate::PassesBy
 }
 
-/// The acceleration of slip that has just begun is zero but for rounding: below this fraction of its terms it
-/// counts as zero. Where inputs are steep, the rounding of the time of the event adds to it.
+/// The acceleration of slip that has just begun is zero up to rounding: below this part of its terms it
+/// counts as zero. For steep inputs the rounding error of the event's time adds to it.
 const BEGINS: f64 = 1e-7;
 
-/// Slip below this, relative to the greatest speeds so far, is rounding: it has just begun.
+/// Slip below this part of the greatest speeds so far is a rounding error: it has just begun.
 const ROUNDING: f64 = 1e-14;
 
-/// Whether slip is rounding; `scale` are the greatest speeds so far.
+/// Whether slip is a rounding error; `scale` holds the greatest speeds so far.
 fn is_rounding(here: &Evaluation, place: usize, scale: &[f64]) -> bool {
     here.support.slip(place).norm() <= ROUNDING * here.support.velocity_size(place, scale)
 }
 
-/// The time after which slip would end if its rate stayed; `None` where it grows or has just begun. `scale` are
-/// the greatest speeds so far.
+/// The time after which slip would end at its present rate; `None` if it grows or has just begun. `scale`
+/// holds the greatest speeds so far.
 pub(crate) fn time_of_slip(here: &Evaluation, place: usize, scale: &[f64]) -> Option<f64> {
     let Hold::Slide(d) = here.holds[place] else { return None };
     let forces = here.forces.as_ref()?;
     let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
     let slip = here.support.slip(place).norm();
     let along = rate.dot(&d);
-    if is_rounding(here, place, scale) {
-        let support = &here.support;
-        let size = |row: usize| {
-            let terms =
-                (0..forces.lambda.len()).map(|j| (support.coupled[(row, j)] * forces.lambda[j]).abs());
-            support.beta[row].abs() + terms.sum::<f64>()
-        };
-        if -along <= BEGINS * size(3 * place + 1).hypot(size(3 * place + 2)) {
-            return None;
-        }
+    if is_rounding(here, place, scale) && -along <= BEGINS * size_of_rate(here, forces, place) {
+        return None;
     }
     (along < 0.0).then(|| slip / -along)
+}
+
+/// The sum of the magnitudes of the terms of the rate of slip.
+fn size_of_rate(here: &Evaluation, forces: &Forces, place: usize) -> f64 {
+    let support = &here.support;
+    let size = |row: usize| {
+        let terms = (0..forces.lambda.len()).map(|j| (support.coupled[(row, j)] * forces.lambda[j]).abs());
+        support.beta[row].abs() + terms.sum::<f64>()
+    };
+    hypot(size(3 * place + 1), size(3 * place + 2))
+}
+
+/// Whether slip has passed zero: it is opposite to the direction in which it began, which its friction still
+/// opposes, by more than rounding, and grows. So it is where slip began whose rate changed its sign before it
+/// was as large as the errors of a step.
+pub(crate) fn has_passed(here: &Evaluation, place: usize, scale: &[f64]) -> bool {
+    let (Hold::Slide(d), Some(forces)) = (here.holds[place], here.forces.as_ref()) else { return false };
+    let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+    here.support.slip(place).dot(&d) < 0.0
+        && !is_rounding(here, place, scale)
+        && -rate.dot(&d) > BEGINS * size_of_rate(here, forces, place)
 }
 
 /// Whether slip that has a direction is so small that its rate could end it within a time, were it
@@ -146,10 +162,20 @@ pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64], scale: &[
         return false;
     }
     let Some(forces) = here.forces.as_ref() else { return false };
-    let rate = forces.acceleration[3 * place + 1].hypot(forces.acceleration[3 * place + 2]);
+    let rate = hypot(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
     let slip = here.support.slip(place).norm();
     slip > DIRECTION * here.support.velocity_size(place, speeds) && slip < within * rate
 }
+
+/// Whether slip decreases along its direction, so that it reaches zero without turning.
+pub(crate) fn straight(here: &Evaluation, place: usize) -> bool {
+    let (Hold::Slide(d), Some(forces)) = (&here.holds[place], here.forces.as_ref()) else { return false };
+    let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+    rate.dot(d) <= -STRAIGHT * rate.norm()
+}
+
+/// The least cosine of the angle between slip that decreases straight to zero and its negative rate.
+const STRAIGHT: f64 = 1.0 - 1e-9;
 
 #[cfg(test)]
 mod tests {
@@ -157,8 +183,8 @@ mod tests {
 
     use super::*;
 
-    /// A contact of an arm whose direction of slip settles 85 times as fast as its speed falls: long steps of
-    /// tau lose the limit, and slip seemed to pass by.
+    /// A contact of an arm whose direction of slip settles 85 times as fast as its speed decreases: long
+    /// steps of tau miss the limit, and slip seemed not to end.
     #[test]
     fn slip_ends_where_its_direction_settles_fast() {
         let matrix = Matrix3::new(
@@ -189,8 +215,8 @@ mod tests {
                 ]),
             };
             let holds = [Hold::Slide(Vector2::new(cos, sin))];
-            // The limit is 200.95 degrees, where slip falls at 2.1 m/s^2; from the sides the first part of
-            // the way is a little faster or slower.
+            // The limit is 200.95 degrees, where slip decreases at 2.1 m/s^2; for other initial directions
+            // the rate is a little different at first.
             match fate(&support, &holds, &[mu], 0, 1e-6) {
                 Fate::Ends(time) => assert!((time * 2.13 / speed - 1.0).abs() < 0.05, "{start}: {time}"),
                 Fate::PassesBy => panic!("{start}: slip does not end"),
@@ -198,9 +224,9 @@ mod tests {
         }
     }
 
-    /// A contact whose slip ends while it nearly jams: f / m_nn is 1.8e-6, and 1e-5 rad beside the slip there
-    /// are no forces. The end of its slip, 0.1 ps away, was not seen, and the steps of the integration
-    /// became too small.
+    /// A contact whose slip ends while it nearly jams: f / m_nn is 1.8e-6, and there are no forces 1e-5 rad
+    /// away from the direction of slip. The end of its slip, 0.1 ps away, was not found, and the steps of the
+    /// integration became too small.
     #[test]
     fn slip_ends_where_the_contact_nearly_jams() {
         let matrix = [

@@ -1,36 +1,36 @@
-//! The smooth parts of a motion: what it was between its events, kept on request for who follows the motion once more,
-//! with derivatives for instance.
+//! The smooth parts of a motion between its events. They are recorded on request, for users that integrate
+//! the motion again, with derivatives for instance.
 
 use crate::phase::{Closed, Modes};
 use crate::stepper::Step;
 
-/// A part of a motion through which the modes of all contacts stayed the same: a step of the integration, or its part
-/// before an event.
+/// A part of a motion with constant modes of all contacts: a step of the integration, or its part before an
+/// event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmoothPart {
-    /// when it begins, s
+    /// initial time, s
     pub start: f64,
-    /// when it ends, s
+    /// final time, s
     pub end: f64,
-    /// coordinates and independent speeds at its beginning, after the events there
+    /// initial coordinates and independent speeds, after the events there
     pub first: Vec<f64>,
-    /// coordinates and independent speeds at its end, before the events there
+    /// final coordinates and independent speeds, before the events there
     pub last: Vec<f64>,
     /// the contacts that were closed
     pub closed: Vec<ClosedPart>,
-    /// the inputs that were held
+    /// the inputs that were constant
     pub inputs: Vec<f64>,
-    /// what ended the modes; `None` where they went on
+    /// the function that ended the modes; `None` if they continued
     pub ended_by: Option<Guard>,
 }
 
-/// A closed contact through a part of a motion.
+/// A closed contact during a part of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedPart {
-    /// its number; those from the number of contacts on are torques of rolling and spinning friction
+    /// its index; indices from the number of contacts on are torques of rolling and spinning friction
     pub contact: usize,
-    /// `None` while it sticks; else the direction in which its slip began, along the two tangential axes of the contact
-    /// basis: the direction of slip as long as slip is too small to have one
+    /// `None` while it sticks; else the direction in which its slip began, along the two tangential axes of
+    /// the contact basis, which is the direction of slip as long as slip is too small to have one
     pub slides: Option<[f64; 2]>,
 }
 
@@ -40,15 +40,15 @@ pub struct ClosedPart {
 pub enum Guard {
     /// the gap of an open contact
     Gap(usize),
-    /// the way of a contact to where its face begins or ends
+    /// the distance of a contact from the boundary of its face
     Face(usize),
     /// the normal force of a closed contact
     NormalForce(usize),
-    /// what is left of the friction that may hold a contact which sticks
+    /// the remaining friction of a sticking contact
     Friction(usize),
     /// the slip of these contacts
     Slip(Vec<usize>),
-    /// f of a sliding contact: it jams
+    /// f of a sliding contact, which jams
     Jam,
     /// a function of [`crate::Options::events`]
     Function(usize),
@@ -59,7 +59,7 @@ pub enum Guard {
 pub(crate) struct Parts(Vec<SmoothPart>);
 
 impl Parts {
-    /// A step was made, from a state on, to an end that was corrected for drift.
+    /// Adds a step that started from a state, with its end corrected for drift.
     pub fn add(&mut self, step: &Step, modes: &Modes, end: &[f64]) {
         let count = end.len();
         self.0.push(SmoothPart {
@@ -73,14 +73,14 @@ impl Parts {
         });
     }
 
-    /// A guard ended the last part; none of its own, where slip goes on to its end in a part that follows.
+    /// Sets the function that ended the last part; `None` if slip continues to its end in a separate part.
     pub fn end(&mut self, guard: Option<Guard>) {
         if let Some(last) = self.0.last_mut() {
             last.ended_by = guard;
         }
     }
 
-    /// The last part was the end of slip of these contacts, from a state on, in these modes.
+    /// Adds the end of slip of these contacts as a part, from a state in these modes.
     pub fn end_of_slip(&mut self, before: &[f64], closed: &[Closed], stopped: &[usize]) {
         let Some(last) = self.0.last_mut() else { return };
         let count = last.first.len();
@@ -89,7 +89,7 @@ impl Parts {
         last.ended_by = Some(Guard::Slip(stopped.to_vec()));
     }
 
-    /// Those of a later transition follow. A part that was tried and replaced by a later one is forgotten.
+    /// Appends the parts of a later transition. A part that was tried and replaced is dropped.
     pub fn follow(&mut self, later: Parts) {
         for part in later.0 {
             while self.0.last().is_some_and(|last| last.end > part.start) {
@@ -99,7 +99,7 @@ impl Parts {
         }
     }
 
-    /// All of them, which are then forgotten.
+    /// Returns all parts and removes them.
     pub fn take(&mut self) -> Vec<SmoothPart> {
         std::mem::take(&mut self.0)
     }

@@ -1,4 +1,4 @@
-//! Decides what the contacts do in the start state.
+//! Determines the phases of the contacts in the start state.
 
 use crate::closed_contacts::ClosedContacts;
 use crate::motion::Failure;
@@ -6,8 +6,8 @@ use crate::phase::{Leaving, Phase};
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
-/// Bodies overlap where a gap is below minus this part of the length of the problem at the start;
-/// contacts below it touch.
+/// Bodies overlap at the start if a gap is below minus this part of the length of the problem; contacts with
+/// smaller gaps touch.
 const OVERLAP: f64 = 5e-9;
 /// A gap below this part of the length is closed at the start.
 const CLOSED: f64 = 5e-15;
@@ -47,7 +47,7 @@ impl Transition<'_> {
             let rounding = 1e-9 * support.velocity_size(0, state.speeds);
             let rounding = self.unseen(&support, 0, state.speeds, rounding)?;
             if rate < -rounding {
-                // One that is a little open yet closes by itself.
+                // A contact with a small open gap closes by itself later.
                 if gap <= CLOSED * self.front.scales.length {
                     strikes.get_or_insert(contact);
                 }

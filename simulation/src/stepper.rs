@@ -1,62 +1,62 @@
 //! Makes one step of the integration, with dense output.
 //!
-//! Dormand and Prince's method of order 8, with the coefficients of the crate `differential-equations` (E. Hairer,
-//! S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, section II.5 and II.6). Time is local to the
-//! step, so that short steps late in a motion lose no digits. Rates that are known are not evaluated again, and a
-//! step allocates its memory once.
+//! Dormand and Prince's method of order 8, with the coefficients of the crate `differential-equations` (E.
+//! Hairer, S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, section II.5 and II.6).
+//! Time is relative to the start of the step, so that short steps late in a motion lose no digits. Known
+//! rates are not evaluated again, and a step allocates its memory once.
 
 use std::sync::LazyLock;
 
 use differential_equations::tableau::ButcherTableau;
 
-/// Stages of the method, those of its dense output with the rates at the end, and its order.
+/// Numbers of stages of the method and of its dense output including the rates at the end, and its order.
 const STAGES: usize = 12;
 const ALL_STAGES: usize = 16;
 const ORDER: usize = 8;
 
 static METHOD: LazyLock<ButcherTableau<f64, STAGES, ALL_STAGES>> = LazyLock::new(ButcherTableau::dop853);
 
-/// Most halvings (or so) of a step that is refused.
+/// Largest number of rejections of a step, each of which about halves it.
 const REFUSALS: usize = 60;
-/// Steps aim at this part of the size that the error allows, and change by no more than these factors.
+/// Steps aim at this part of the size that the error allows, and change at most by these factors.
 const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const GREATEST_FACTOR: f64 = 10.0;
 
-/// The rates y' = f(t, y) of a system; not a number where it has none.
+/// The rates y' = f(t, y) of a system; NaN where it has none.
 pub type Rates<'r> = dyn FnMut(f64, &[f64], &mut [f64]) + 'r;
 
-/// A step that was made: from `t` over `h`.
+/// An accepted step from `t` over `h`.
 #[derive(Clone)]
 pub struct Step {
-    /// Its beginning.
+    /// Its initial time.
     pub t: f64,
     /// Its length.
     pub h: f64,
-    /// The step size that the error allows next.
+    /// The next step size according to the error.
     pub next: f64,
     /// The state at its end.
     pub end: Vec<f64>,
     start: Vec<f64>,
-    /// The rates at the start; none of a step in which nothing moves.
+    /// The rates at the start; empty for a step at rest.
     first: Vec<f64>,
-    /// Coefficients of the dense output, [`ORDER`] vectors; none of a step in which nothing moves.
+    /// Coefficients of the dense output, [`ORDER`] vectors; empty for a step at rest.
     dense: Vec<f64>,
 }
 
 impl Step {
-    /// Nothing moves over this time.
+    /// A step at rest over this time.
     pub fn still(t: f64, h: f64, state: &[f64]) -> Self {
         let (end, start) = (state.to_vec(), state.to_vec());
         Self { t, h, next: h, end, start, first: Vec::new(), dense: Vec::new() }
     }
 
-    /// The state at the beginning.
+    /// The initial state.
     pub fn start(&self) -> &[f64] {
         &self.start
     }
 
-    /// The rates at the beginning, if they are known.
+    /// The initial rates, if they are known.
     pub fn first(&self) -> Option<&[f64]> {
         (!self.first.is_empty()).then_some(&self.first)
     }
@@ -81,7 +81,7 @@ impl Step {
         state
     }
 
-    /// Takes another end, which differs from the integrated one by the correction of drift.
+    /// Replaces the final state by one that is corrected for drift.
     pub fn corrected(&mut self, end: &[f64]) {
         self.end.copy_from_slice(end);
     }
@@ -93,7 +93,7 @@ impl std::fmt::Debug for Step {
     }
 }
 
-/// Relative and absolute tolerance of a step; absolute per component.
+/// Relative and absolute tolerance of a step; the absolute one per component.
 #[derive(Clone, Debug)]
 pub struct Tolerances {
     /// Relative to the state.
@@ -102,9 +102,9 @@ pub struct Tolerances {
     pub absolute: f64,
 }
 
-/// A step from (t, y) of at most `h`, whose error is within the tolerances; `first` are the rates there if they are
-/// known. `None` if there is none: the rates are not finite, or the step became too small. Rates that are not
-/// finite make a step be refused.
+/// A step from (t, y) of at most `h` whose error is within the tolerances; `first` are the initial rates if
+/// they are known. A step with rates that are not finite is rejected. `None` if the initial rates are not
+/// finite, or the step became too small.
 pub fn step(
     rates: &mut Rates<'_>,
     (t, y, first): (f64, &[f64], Option<&[f64]>),
@@ -133,7 +133,7 @@ pub fn step(
     None
 }
 
-/// A step from (t, y) over exactly `h`, whatever its error: part of a step that was accepted.
+/// A step from (t, y) over exactly `h`, without error control: part of a step that was accepted.
 pub fn part(rates: &mut Rates<'_>, (t, y, first): (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
     if h <= 0.0 {
         return Some(Step::still(t, 0.0, y));
@@ -148,7 +148,7 @@ trait ClampFrom {
 }
 
 impl ClampFrom for f64 {
-    /// Into these bounds; what is not a number becomes the least.
+    /// Limits a number to these bounds; NaN becomes the least.
     fn clamp_from(self, least: f64, greatest: f64) -> f64 {
         self.max(least).min(greatest)
     }
@@ -178,7 +178,7 @@ impl<'y> Stages<'y> {
         &self.k[i * self.start.len()..][..self.start.len()]
     }
 
-    /// The rates of stage i from those before it.
+    /// The rates of stage i from the previous ones.
     fn stage(&mut self, rates: &mut Rates<'_>, i: usize, h: f64) {
         let n = self.start.len();
         let (before, rest) = self.k.split_at_mut(i * n);
@@ -187,7 +187,7 @@ impl<'y> Stages<'y> {
         rates(self.t + METHOD.c[i] * h, &self.state, &mut rest[..n]);
     }
 
-    /// All stages of a step, and its end.
+    /// All stages of a step, and its final state.
     fn compute(&mut self, rates: &mut Rates<'_>, h: f64) {
         for i in 1..STAGES {
             self.stage(rates, i, h);
@@ -200,7 +200,7 @@ impl<'y> Stages<'y> {
         }
     }
 
-    /// The error of the step beside the tolerances. `state` is the mean rate.
+    /// The error of the step relative to the tolerances. `state` is the mean rate.
     fn error(&self, h: f64, tolerances: &Tolerances) -> f64 {
         let (Some(er), Some(bh)) = (&METHOD.er, &METHOD.bh) else { return 0.0 };
         let n = self.start.len();
@@ -222,7 +222,7 @@ impl<'y> Stages<'y> {
         h * fifth * (1.0 / (both * n as f64)).sqrt()
     }
 
-    /// The step with its dense output; `None` where its end is not finite.
+    /// The step with its dense output; `None` if its final state is not finite.
     fn finish(mut self, rates: &mut Rates<'_>, h: f64, next: f64) -> Option<Step> {
         if !self.end.iter().all(|value| value.is_finite()) {
             return None;
@@ -251,12 +251,12 @@ impl<'y> Stages<'y> {
         Some(Step { t: self.t, h, next, end: self.end, start: self.start.to_vec(), first, dense })
     }
 
-    /// Takes the trapezoidal rule where it agrees with the step but for rounding (constant acceleration), for it
-    /// has fewer roundings and no bias: over 1e4 bounces that of the method's twelve weights would be seen in the
-    /// energy.
+    /// Replaces the result by that of the trapezoidal rule if both agree up to rounding (constant
+    /// acceleration), since the rule has fewer roundings and no bias: over 1e4 bounces the rounding of the
+    /// twelve weights of the method would be visible in the energy.
     fn unrounded(&mut self, rates: &mut Rates<'_>, h: f64) {
         let n = self.start.len();
-        // Speeds first, then the coordinates that follow from them.
+        // Speeds first, then the coordinates, which depend on them.
         for again in [true, false] {
             let mut changed = false;
             for i in 0..n {
@@ -276,7 +276,7 @@ impl<'y> Stages<'y> {
     }
 }
 
-/// Adds the sum of vectors, which stand one after the other, with these weights times a factor.
+/// Adds a weighted sum of vectors, which are stored one after the other, times a factor.
 fn add(sum: &mut [f64], vectors: &[f64], weights: &[f64], factor: f64) {
     for (vector, &weight) in vectors.chunks_exact(sum.len()).zip(weights) {
         if weight != 0.0 {
@@ -316,13 +316,13 @@ mod tests {
         let tolerances = Tolerances { relative: 1e-10, absolute: 1e-10 };
         let step = step(&mut oscillator, (3.0, &[1.0, 0.0], None), 10.0, &tolerances).unwrap();
         assert!(step.h > 0.1 && step.h < 2.0 && (step.end[0] - step.h.cos()).abs() < 1e-10);
-        // Rates that are not finite anywhere ahead leave nothing.
+        // If no rates ahead are finite, there is no step.
         let mut broken =
             |t: f64, _: &[f64], rates: &mut [f64]| rates.fill(if t > 3.0 { f64::NAN } else { 1.0 });
         assert!(super::step(&mut broken, (3.0, &[1.0], None), 1.0, &tolerances).is_none());
     }
 
-    /// Constant acceleration leaves no error of the method's weights.
+    /// For constant acceleration the weights of the method cause no error.
     #[test]
     fn constant_accelerations_are_integrated_to_the_last_digit() {
         let mut fall = |_: f64, y: &[f64], rates: &mut [f64]| (rates[0], rates[1]) = (y[1], -9.81);

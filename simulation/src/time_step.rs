@@ -1,4 +1,4 @@
-//! Makes one step of the motion: integrates, finds the first event in the step and handles it.
+//! Makes one step of the motion: integrates, finds the first event in the step, and handles it.
 
 use std::cell::{Cell, RefCell};
 
@@ -12,18 +12,18 @@ use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::phase::{Closed, Phase, Turned, Turning, mus};
 use crate::settled_slip::settled;
 use crate::signed_slip::{self, EXPLICIT, Search, SettledSlip, inconsistent};
-use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
+use crate::slip_end::{ENDING, Fate, fate, has_passed, may_end, straight, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
-/// A share of the time to the end of slip that a step may take.
+/// The part of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.75;
 
-/// Slip that is followed to its end ends within so many times the time in which its rate would end it.
+/// Slip that is followed to its end separately ends within this many times the time given by its rate.
 const LATE: f64 = 1e3;
-/// So many steps without an event must advance the motion by this part of the longest step so far, or of half the time of
-/// the problem.
+/// This many steps without an event must advance the motion by [`ADVANCE`] of the longest step so far, or of
+/// half the time of the problem.
 const STEPS: usize = 3000;
 const LONG: f64 = 0.5;
 const ADVANCE: f64 = 1e-2;
@@ -32,28 +32,29 @@ const STUCK: usize = 1200;
 const CONTACTS: usize = 4;
 const NOTHING: f64 = 2e-8;
 
-/// Steps with settled directions that are tried before directions are integrated.
+/// Number of steps with settled directions that are tried before directions are integrated.
 const TRIALS: usize = 4;
-/// Such a step is followed up to the slip that is left at this part of [`ENDING`].
+/// Such a step ends where the remaining slip is this part of [`ENDING`].
 const LAST: f64 = 0.5;
-/// Slip that did not end as it settled is integrated until it is so many times as fast.
+/// Slip that did not end along its settled direction is integrated until it is this many times as fast.
 const BARRED: f64 = 100.0;
-/// They do not follow from the state where so many events are at one time.
+/// Directions do not follow from the state after this many events at one time.
 const CROWD: usize = 4;
-/// Directions follow from the state while f / m_nn is above this: next to a jam f depends on them too much.
+/// Directions follow from the state if f / m_nn is above this; near a jam f depends on them too much.
 const FAR: f64 = 0.1;
-/// Places of a step at which slip is compared with its settled direction.
+/// Points of a step at which slip is compared with its settled direction.
 const LOOKED_AT: [f64; 2] = [0.4, 0.8];
-/// The next one aims at this part of the size that the error allows, and is not shorter or longer by more than these
+/// The next step aims at this part of the size that the error allows, and its length changes at most by these
 /// factors.
 const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.01;
 const GREATEST_FACTOR: f64 = 5.0;
-/// After a step in which directions were integrated, a longer one with settled directions is tried.
+/// After a step with integrated directions, a step with settled directions that is longer by this factor is
+/// tried.
 const LONGER: f64 = 2.0;
 const LONGEST: f64 = 50.0;
 
-/// What came of the attempt to make a step.
+/// The result of an attempted step.
 pub(crate) enum Attempt {
     /// A step, and the first event in it.
     Made(Step, Option<(Watched, Crossing)>),
@@ -61,7 +62,7 @@ pub(crate) enum Attempt {
     Stuck(Option<Failure>),
 }
 
-/// Evaluations of the functions of a step after which it is not halved any more.
+/// Number of evaluations of the functions of a step after which it is not bisected any more.
 const LOOKS: usize = 30_000;
 
 impl Transition<'_> {
@@ -77,12 +78,12 @@ impl Transition<'_> {
         let mut closed = self.closed();
         let here = match self.motion(&closed).evaluate(self.front.t, &self.front.y) {
             Ok(here) => here,
-            // It has jammed with the end of the last step.
+            // The contact has jammed at the end of the last step.
             Err(failure) => return self.stuck_integration(Some(failure)),
         };
         self.weigh_lifted(&here)?;
         for (contact, hold) in closed.iter().zip(&here.holds) {
-            // Should slip become too small to have a direction, it has the last one.
+            // If slip becomes too small to have a direction, the last one is used.
             if let Hold::Slide(direction) = hold {
                 self.front.phases[contact.contact] = Phase::Slide(*direction);
             }
@@ -98,13 +99,19 @@ impl Transition<'_> {
                 continue;
             }
             left[i] = time_of_slip(&here, i, &self.front.scale);
-            if left[i].is_some_and(|left| left < ending)
+            let passed = has_passed(&here, i, &self.front.scale);
+            if passed
+                || left[i].is_some_and(|left| left < ending)
                 || may_end(&here, i, speeds, &self.front.scale, ending)
             {
-                if closed.len() > 1 {
-                    let stopped = self.stops(&closed, &here, speeds);
+                let time = if passed { 0.0 } else { left[i].unwrap_or(0.0).min(ending) };
+                if closed.len() > 1 || passed {
+                    let mut stopped = self.stops(&closed, &here, speeds);
+                    if stopped.is_empty() && (passed || straight(&here, i)) {
+                        stopped = self.turns_round(&closed, &here, i);
+                    }
                     if !stopped.is_empty() {
-                        return self.end_slip(&closed, &here, &stopped, left[i].unwrap_or(0.0).min(ending));
+                        return self.end_slip(&closed, &here, &stopped, time);
                     }
                 } else if let Fate::Ends(time) =
                     fate(&here.support, &here.holds, &mus(&closed), i, LATE * ending)
@@ -127,7 +134,7 @@ impl Transition<'_> {
                 }
                 match self.attempt(&closed, &here, most)? {
                     Attempt::Made(mut step, crossing) => {
-                        // One that ends with the slip tells nothing of the size that the error allows.
+                        // A step that ends with the slip says nothing about the size that the error allows.
                         if step.h == most && most < free {
                             step.next = step.next.max(self.front.next);
                         }
@@ -149,6 +156,9 @@ impl Transition<'_> {
                     false => step.next.max((LONGER * self.front.next_settled).min(LONGEST * step.next)),
                 };
                 self.commit(&mut step)?;
+                if step.h > self.instant() {
+                    self.front.crowd = 0;
+                }
                 self.progress(step.h)?;
                 self.on_time()
             }
@@ -160,9 +170,9 @@ impl Transition<'_> {
         }
     }
 
-    /// A step in which contacts whose slip has settled have the directions that follow from the state; `left` are the
-    /// times to the end of each slip if its rate stayed. `None` where no such step is as long as an explicit integration
-    /// of the directions allows, and nothing has changed then but the sizes of steps that are tried.
+    /// A step in which contacts with settled slip have the directions that follow from the state; `left` are
+    /// the times to the end of each slip at its present rate. `None` if no such step is as long as an
+    /// explicit integration of the directions allows; then only the sizes of trial steps have changed.
     fn settled_step(
         &mut self,
         closed: &mut [Closed],
@@ -207,7 +217,7 @@ impl Transition<'_> {
             for slip in &found.slips {
                 let place = slip.place;
                 trial[place].slides = Some(slip.direction);
-                // The end of slip is followed by itself.
+                // The end of slip is followed separately.
                 let least =
                     left[place].map_or(0.0, |left| LAST * ending / left * here.support.slip(place).norm());
                 trial[place].turning = Some(Turning {
@@ -244,8 +254,8 @@ impl Transition<'_> {
         None
     }
 
-    /// By how much slip differs from its settled directions in the first part of a step, beside what the tolerances
-    /// allow.
+    /// The difference of slip from its settled directions in the first part of a step, relative to the
+    /// tolerances.
     fn inconsistency(&self, closed: &[Closed], step: &Step, part: f64) -> f64 {
         let motion = self.motion(closed);
         let at = |share: f64| {
@@ -262,7 +272,7 @@ impl Transition<'_> {
         Tolerances { relative: self.options.relative_tolerance, absolute: self.options.absolute_tolerance }
     }
 
-    /// Counts steps without an event, and refuses to go on where they hardly advance the motion.
+    /// Counts steps without an event, and stops with an error if they hardly advance the motion.
     fn progress(&mut self, h: f64) -> Result<(), SimulationError> {
         let (steps, since, longest) = self.front.steps;
         let longest = longest.max(h.min(LONG * self.front.scales.time));
@@ -294,6 +304,8 @@ impl Transition<'_> {
     ) -> Result<Attempt, SimulationError> {
         let tolerances = self.tolerances();
         let looks = Cell::new(0);
+        // What the user gave and is no number: the error, if no shorter step avoids it.
+        let refused = RefCell::new(None);
         for _ in 0..80 {
             if looks.get() > LOOKS {
                 let modes = self.modes_in_words();
@@ -314,8 +326,15 @@ impl Transition<'_> {
                 stepper::step(&mut rates, (self.front.t, &self.front.y, first), most, &tolerances)
             };
             let Some(step) = made else {
-                return Ok(Attempt::Stuck(failed.into_inner()));
+                return Ok(Attempt::Stuck(failed.into_inner().or(refused.into_inner())));
             };
+            let refused_before = refused.take();
+            // No time is left before it.
+            if step.h <= 4.0 * f64::EPSILON * self.front.t.abs()
+                && let Some(failure) = refused_before
+            {
+                return Err(self.failure(failure));
+            }
             if !self.keeps_direction(closed, here, &step)? {
                 most = 0.5 * step.h;
                 continue;
@@ -337,7 +356,11 @@ impl Transition<'_> {
                     values: &mut |fraction| {
                         looks.set(looks.get() + 1);
                         let at = &mut |after: f64| step.at(after / h);
-                        self.values(closed, &watched, h * fraction, Some(here), at).ok()
+                        let values = self.values(closed, &watched, h * fraction, Some(here), at);
+                        if let Err(Failure::Input(message)) = &values {
+                            *refused.borrow_mut() = Some(Failure::Input(message.clone()));
+                        }
+                        values.ok()
                     },
                     slopes: &mut |fraction| {
                         let y = step.at(fraction);
@@ -356,7 +379,10 @@ impl Transition<'_> {
             let found = found.map(|crossing| (watched[crossing.function], crossing));
             return Ok(Attempt::Made(step, found));
         }
-        Err(self.error(None, ErrorKind::Stalled))
+        Err(match refused.into_inner() {
+            Some(failure) => self.failure(failure),
+            None => self.error(None, ErrorKind::Stalled),
+        })
     }
 
     /// Handles an integration that cannot continue.
@@ -375,7 +401,7 @@ impl Transition<'_> {
         }
     }
 
-    /// Whether sliding contacts keep the half plane of their slip.
+    /// Whether the slip of sliding contacts stays in its half plane.
     fn keeps_direction(
         &self,
         closed: &[Closed],

@@ -1,5 +1,5 @@
-//! What becomes of torques where modes change: their phases follow those of their contacts, and their events have
-//! names of their own.
+//! Torques at changes of modes: their phases follow those of their contacts, and their events have names of
+//! their own.
 //!
 //! Theory: docs/theory.md, section 17.17.
 
@@ -14,7 +14,7 @@ use crate::transition::Transition;
 use crate::{ErrorKind, EventKind, SimulationError};
 
 impl Transition<'_> {
-    /// Takes the mode of a torque, after that of its contact, and says what changed.
+    /// Applies the mode of a torque, after that of its contact, and records the change as an event.
     pub(crate) fn apply_to_torque(
         &mut self,
         number: usize,
@@ -27,7 +27,7 @@ impl Transition<'_> {
             _ if !self.front.phases[torque.contact].is_closed() => Phase::Open(Leaving::Apart),
             Decision::Stick => Phase::Stick,
             Decision::Slide(direction, _) => Phase::Slide(direction),
-            // Without a normal force, which is rounding, it turns or not as before.
+            // If the normal force is a rounding error, its phase does not change.
             Decision::Separate => self.front.phases[number],
         };
         self.front.phases[number] = phase;
@@ -48,7 +48,7 @@ impl Transition<'_> {
         }
     }
 
-    /// A contact that slides, or a torque, jams: its force would grow without bound.
+    /// Handles a jam of a sliding contact or of a torque, whose force would grow without bound.
     pub(crate) fn jams(&mut self, contact: usize) -> Result<(), SimulationError> {
         let own = self.mechanism.contact(contact);
         let touching = (0..self.front.phases.len()).filter(|&i| self.front.phases[i].is_closed());
@@ -60,7 +60,7 @@ impl Transition<'_> {
         Err(self.error(Some(own), ErrorKind::NoForces(message.to_owned())))
     }
 
-    /// What a closed contact or its torque does, in a word.
+    /// The mode of a closed contact or of its torque in a word.
     pub(crate) fn mode_in_words(&self, closed: &Closed) -> &'static str {
         let turning = self.mechanism.torque(closed.contact).map(|torque| torque.turning);
         match (turning, closed.slides.is_some()) {
@@ -74,7 +74,7 @@ impl Transition<'_> {
     }
 }
 
-/// Rotation that begins in a direction.
+/// The event of rotation that begins in a direction.
 fn turns(turning: Turning, direction: Vector2<f64>, selection: Selection) -> EventKind {
     match turning {
         Turning::Rolling => EventKind::Roll { direction: [direction.x, direction.y], selection },
@@ -82,7 +82,7 @@ fn turns(turning: Turning, direction: Vector2<f64>, selection: Selection) -> Eve
     }
 }
 
-/// Rotation that ends.
+/// The event of rotation that ends.
 fn ends(turning: Turning, selection: Selection) -> EventKind {
     match turning {
         Turning::Rolling => EventKind::RollEnds { selection },

@@ -1,8 +1,9 @@
 //! Friction of rolling and spinning: torques between the bodies in contact, bounded by the normal force.
 //!
-//! A torque is a contact of its own that shares the normal force of the contact to which it belongs. Its
-//! tangential velocities are the components of the relative angular velocity that it resists, times a lever; its
-//! friction is the torque over that lever. So modes, forces and events of torques are found as those of friction are.
+//! A torque is treated as an additional contact that shares the normal force of its own contact. Its
+//! tangential velocities are the components of the relative angular velocity that it resists, times a lever
+//! arm; its friction is the torque divided by that lever arm. So modes, forces and events of torques are
+//! computed like those of friction.
 //!
 //! Theory: docs/theory.md, section 17.17.
 
@@ -13,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use crate::pair::{Friction, Pair};
 
-/// Which rotation a torque resists.
+/// The rotation that a torque resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Turning {
     /// about axes in the tangent plane
@@ -23,7 +24,8 @@ pub(crate) enum Turning {
 }
 
 impl Turning {
-    /// The components of the relative angular velocity along n, t, s that stand for the two tangential velocities.
+    /// The components of the relative angular velocity along n, t, s that correspond to the two tangential
+    /// velocities.
     fn axes(self) -> &'static [usize] {
         match self {
             Self::Rolling => &[1, 2],
@@ -38,13 +40,13 @@ pub(crate) struct Torque {
     /// the contact whose normal force bounds it
     pub contact: usize,
     pub turning: Turning,
-    /// The length by which angular velocities become velocities and torques forces, m.
+    /// The lever arm that converts angular velocities to velocities and forces to torques, m.
     pub lever: f64,
-    /// the greatest torque over the normal force and the lever
+    /// the greatest torque divided by the normal force and the lever arm
     pub mu: f64,
 }
 
-/// What a mechanism tells of the relative rotation at a contact, along n, t, s.
+/// The relative rotation at a contact, along n, t, s.
 struct Rotation {
     velocity: [f64; 3],
     free: [f64; 3],
@@ -55,7 +57,7 @@ struct Rotation {
 }
 
 impl Rotation {
-    /// `None` where the mechanism does not tell it.
+    /// `None` if the mechanism does not provide it.
     fn of(
         mechanism: &dyn Contacts<f64>,
         contact: usize,
@@ -75,7 +77,7 @@ impl Rotation {
     }
 }
 
-/// What the forces of a torque follow from, along its normal and tangential axes.
+/// The quantities from which the forces of a torque are computed, along its normal and tangential axes.
 pub(crate) struct Rows {
     pub velocity: Vector3<f64>,
     pub free: Vector3<f64>,
@@ -85,12 +87,12 @@ pub(crate) struct Rows {
     pub responses: Vec<Vector3<f64>>,
 }
 
-/// A mechanism, and torques as contacts with the numbers that follow its own.
+/// A mechanism with torques as additional contacts; their indices follow those of its own contacts.
 #[derive(Clone, Copy)]
 pub(crate) struct WithTorques<'a> {
     pub mechanism: &'a dyn Contacts<f64>,
     torques: &'a [Torque],
-    /// the number of the mechanism's contacts
+    /// number of contacts of the mechanism
     own: usize,
 }
 
@@ -109,17 +111,17 @@ impl<'a> WithTorques<'a> {
         Self { mechanism, torques, own }
     }
 
-    /// The torque with this number; none where it is a contact of the mechanism.
+    /// The torque with this index; `None` for a contact of the mechanism.
     pub fn torque(&self, contact: usize) -> Option<&'a Torque> {
         self.torques.get(contact.checked_sub(self.own)?)
     }
 
-    /// The contact of the mechanism: itself, or that to which a torque belongs.
+    /// The contact of the mechanism: the contact itself, or the one to which a torque belongs.
     pub fn contact(&self, contact: usize) -> usize {
         self.torque(contact).map_or(contact, |torque| torque.contact)
     }
 
-    /// The torques of these contacts, by number.
+    /// The torques of these contacts, by index.
     pub fn torques_of(&self, contacts: &[usize]) -> impl Iterator<Item = usize> {
         let torques = self.torques.iter().enumerate();
         torques.filter(|(_, torque)| contacts.contains(&torque.contact)).map(|(place, _)| self.own + place)
@@ -134,7 +136,7 @@ impl<'a> WithTorques<'a> {
         all
     }
 
-    /// As [`Contacts::gap`]; torques have none.
+    /// Like [`Contacts::gap`]; torques have none.
     pub fn gap(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
         match self.torque(contact) {
             Some(_) => Ok(None),
@@ -142,7 +144,7 @@ impl<'a> WithTorques<'a> {
         }
     }
 
-    /// As [`Contacts::validity`]; torques have none.
+    /// Like [`Contacts::validity`]; torques have none.
     pub fn validity(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
         match self.torque(contact) {
             Some(_) => Ok(None),
@@ -150,7 +152,7 @@ impl<'a> WithTorques<'a> {
         }
     }
 
-    /// As [`Contacts::contact_velocity`]; of a torque that of its rotation.
+    /// Like [`Contacts::contact_velocity`]; for a torque the velocity of its rotation.
     pub fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
         let Some(torque) = self.torque(contact) else {
             return self.mechanism.contact_velocity(contact, state);
@@ -159,13 +161,13 @@ impl<'a> WithTorques<'a> {
         Ok(torque.tangential(|axis| rotation.velocity[axis]))
     }
 
-    /// The rotation that a torque resists: the mechanism told it at the start.
+    /// The rotation that a torque resists; at the start it was checked that the mechanism provides it.
     fn rotation(&self, torque: &Torque, state: &State<'_>) -> Result<Rotation, StateError> {
         let undefined = StateError::Undefined { what: "relative rotation at this contact" };
         Rotation::of(self.mechanism, torque.contact, state)?.ok_or(undefined)
     }
 
-    /// What forces of a torque follow from; none where the number is that of a contact.
+    /// The quantities for the forces of a torque; `None` for a contact of the mechanism.
     pub fn rows(&self, contact: usize, state: &State<'_>) -> Result<Option<Rows>, StateError> {
         let Some(torque) = self.torque(contact) else { return Ok(None) };
         let rotation = self.rotation(torque, state)?;
@@ -180,8 +182,9 @@ impl<'a> WithTorques<'a> {
         }))
     }
 
-    /// Makes torques share the normal forces of their contacts, in the matrix of all: nu - lambda_n >= 0, nu >= 0
-    /// and nu (nu - lambda_n) = 0 leave nu = lambda_n alone. A component that the mechanism does not have is held.
+    /// Makes torques share the normal forces of their contacts in the matrix of all: nu - lambda_n >= 0,
+    /// nu >= 0 and nu (nu - lambda_n) = 0 leave only nu = lambda_n. A component that the mechanism cannot move
+    /// is kept at zero.
     pub fn share_normal_forces(
         &self,
         contacts: &[usize],
@@ -209,7 +212,7 @@ impl<'a> WithTorques<'a> {
 }
 
 impl Torque {
-    /// The velocities that stand for components of a vector.
+    /// The tangential velocities that correspond to the components of a vector.
     fn tangential(&self, component: impl Fn(usize) -> f64) -> Vector3<f64> {
         let mut velocity = Vector3::zeros();
         for (place, &axis) in self.turning.axes().iter().enumerate() {
@@ -218,7 +221,7 @@ impl Torque {
         velocity
     }
 
-    /// The torque along n, t, s that its force stands for, N m.
+    /// The torque along n, t, s that corresponds to a force, N m.
     pub fn torque(&self, force: &Vector3<f64>) -> Vector3<f64> {
         let mut torque = Vector3::zeros();
         for (place, &axis) in self.turning.axes().iter().enumerate() {
@@ -235,17 +238,17 @@ impl Torque {
 
 /// Why there are no torques at a contact.
 pub(crate) enum Lacking {
-    /// The mechanism does not tell its relative rotation.
+    /// The mechanism does not provide its relative rotation.
     Rotation,
     /// The mechanism cannot be evaluated.
     State(StateError),
 }
 
-/// The torques that the surfaces ask for.
+/// The torques that the surfaces require.
 ///
 /// # Errors
 ///
-/// The contact at which they lack something.
+/// The contact whose torque cannot be formed, and why.
 pub(crate) fn torques(
     mechanism: &dyn Contacts<f64>,
     surfaces: &[Option<Pair>],
@@ -266,9 +269,9 @@ pub(crate) fn torques(
     Ok(torques)
 }
 
-/// A length for which unit forces of the torque move the bodies as unit forces of the contact do, so that the numbers of
-/// both are of one size: about the radius of gyration of a single body. `None` where the mechanism does not tell the
-/// rotation.
+/// A lever arm for which unit forces of the torque move the bodies as much as unit forces of the contact, so
+/// that both have numbers of the same size; about the radius of gyration of a single body. `None` if the
+/// mechanism does not provide the rotation.
 fn lever(
     mechanism: &dyn Contacts<f64>,
     contact: usize,

@@ -1,7 +1,7 @@
-//! A transition: one step of the motion, or one change of modes, tried on a copy of the front.
+//! A transition: one step of the motion, or one change of modes, performed on a copy of the front.
 //!
-//! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] makes one from its
-//! front, and takes its front and its events only when all of it has succeeded.
+//! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] creates one from its
+//! front, and accepts its front and its events only if all of it succeeds.
 
 use hodograph::{ComponentKind, State};
 
@@ -15,23 +15,23 @@ use crate::stepper::Step;
 use crate::torques::WithTorques;
 use crate::{ErrorKind, Event, EventKind, Options, SimulationError};
 
-/// A front that is being changed, and what happens to it.
+/// A front that is being changed, with the resulting events.
 pub(crate) struct Transition<'s> {
     pub mechanism: WithTorques<'s>,
-    /// what turns of the mechanism
+    /// the angular speeds and coordinates
     pub angles: &'s Angles,
     pub options: &'s Options,
-    /// the surfaces of each contact; none where a contact has no gap
+    /// the surfaces of each contact; `None` for a contact without a gap
     pub surfaces: &'s [Option<Pair>],
     pub front: Front,
     /// the events so far
     pub events: Vec<Event>,
     /// the step that led to the front, and the modes during it
     pub step: Option<(Step, Modes)>,
-    /// the front at the end of that step, before its event was handled: the motion is right up to there even if
-    /// the event cannot be handled
+    /// the front at the end of that step, before its event was handled: the motion is valid up to there even
+    /// if the event cannot be handled
     pub reached: Option<Front>,
-    /// the smooth parts, where they are kept
+    /// the smooth parts, if they are recorded
     pub parts: Option<Parts>,
 }
 
@@ -53,7 +53,7 @@ impl Transition<'_> {
         Modes { closed: self.closed(), held: self.front.held.clone(), resting: self.front.resting }
     }
 
-    /// Records an event with the state here.
+    /// Records an event with the present state.
     pub(crate) fn push(&mut self, contact: Option<usize>, kind: EventKind) {
         let here = self.here();
         let (coordinates, speeds) = (here.coordinates.to_vec(), here.speeds.to_vec());
@@ -61,7 +61,7 @@ impl Transition<'_> {
         self.events.push(Event { time: self.front.t, contact, kind, coordinates, speeds });
     }
 
-    /// The closed contacts as the integration needs them.
+    /// The closed contacts for the integration.
     pub(crate) fn closed(&self) -> Vec<Closed> {
         self.front
             .phases
@@ -98,12 +98,12 @@ impl Transition<'_> {
         found.map_err(|message| self.error(Some(contact), ErrorKind::BadOption(message)))
     }
 
-    /// The coefficient of a contact that sticks, or of one whose slip is small.
+    /// The coefficient of a sticking contact, or of one with small slip.
     fn mu_in_mode(&self, contact: usize, slides: bool) -> f64 {
         if let Some(torque) = self.mechanism.torque(contact) {
             return torque.mu;
         }
-        // Functions that fail at no slip are refused at the start.
+        // Functions that fail without slip are refused at the start.
         let friction = self.pair(contact).and_then(|pair| pair.friction(0.0).ok()).unwrap_or(Friction::NONE);
         if slides { friction.slips } else { friction.sticks }
     }
@@ -121,7 +121,7 @@ impl Transition<'_> {
         }
     }
 
-    /// The closed contacts and what they do, in words.
+    /// The closed contacts and their modes, in words.
     pub(crate) fn modes_in_words(&self) -> String {
         let name = |contact: usize| {
             self.mechanism.component(ComponentKind::Contact, contact).map_or("?", |component| component.name)
@@ -137,12 +137,12 @@ impl Transition<'_> {
         if modes.is_empty() { "no contact".to_owned() } else { modes.join(", ") }
     }
 
-    /// Why the motion ends where so many events follow each other without progress.
+    /// The error of too many events without progress.
     pub(crate) fn without_end(&self, count: usize) -> ErrorKind {
         ErrorKind::EventsWithoutEnd { count, modes: self.modes_in_words() }
     }
 
-    /// An error here and now.
+    /// An error at the present time.
     pub(crate) fn error(&self, contact: Option<usize>, kind: ErrorKind) -> SimulationError {
         let contact = contact.map(|contact| self.mechanism.contact(contact));
         SimulationError::new(self.mechanism.mechanism, self.front.t, contact, kind)

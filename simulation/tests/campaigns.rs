@@ -47,17 +47,17 @@ impl Family {
 /// How long the longest mechanisms are followed, s: without optimisation they take minutes.
 const LONG: f64 = if cfg!(debug_assertions) { 0.4 } else { 2.0 };
 
-/// The starts: the first so many, or what `HODOGRAPH_DROPS` says, a number or a range.
-fn drops(usual: u64) -> Range<u64> {
+/// The starts: the usual ones, or what `HODOGRAPH_DROPS` says, a number of them or a range.
+fn drops(usual: Range<u64>) -> Range<u64> {
     let text = std::env::var("HODOGRAPH_DROPS").unwrap_or_default();
     match text.split_once("..") {
-        Some((from, to)) => from.parse().unwrap_or(0)..to.parse().unwrap_or(usual),
-        None => 0..text.parse().unwrap_or(usual),
+        Some((from, to)) => from.parse().unwrap_or(usual.start)..to.parse().unwrap_or(usual.end),
+        None => text.parse().map_or(usual, |count| 0..count),
     }
 }
 
 /// Runs a family and tells its outcomes.
-fn campaign(family: &Family, usual: u64) {
+fn campaign(family: &Family, usual: Range<u64>) {
     let mechanism = model(family.model);
     let others: Vec<_> = family.parameters.iter().map(|set| changed(&mechanism, set)).collect();
     let seeds = drops(usual);
@@ -180,7 +180,7 @@ fn boxes() {
         start.speeds.fill(0.0);
         speeds(m, start, random, 2.0, 8.0);
     };
-    campaign(&Family::new("tumbling_box", 6.0, [1.0, 0.7], throw), 4);
+    campaign(&Family::new("tumbling_box", 6.0, [1.0, 0.7], throw), 0..4);
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn two_cubes() {
         speeds(m, start, random, 0.3, 1.0);
     };
     // The last one slides to its end with hardly any forces left that the laws allow.
-    campaign(&Family::new("cubes2", 2.0, [1.0, 0.6], throw), 4);
+    campaign(&Family::new("cubes2", 2.0, [1.0, 0.6], throw), 0..4);
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn balls_in_a_corner() {
         }
         speeds(m, start, random, 1.0, 20.0);
     };
-    campaign(&Family::new("ball_in_corner", 6.0, [1.0, 0.8], throw), 10);
+    campaign(&Family::new("ball_in_corner", 6.0, [1.0, 0.8], throw), 0..10);
 }
 
 #[test]
@@ -216,7 +216,8 @@ fn chains_of_five() {
         }
         speeds(m, start, random, 0.5, 4.0);
     };
-    campaign(&Family::new("chain5", 2.0, [1.0, 0.5], throw), 3);
+    // In the last one slip begins, and its rate changes its sign before it is as large as errors of a step.
+    campaign(&Family::new("chain5", 2.0, [1.0, 0.5], throw), 4..7);
 }
 
 #[test]
@@ -228,7 +229,7 @@ fn chains_of_ten() {
         }
         speeds(m, start, random, 0.5, 4.0);
     };
-    campaign(&Family::new("chain10", LONG, [1.0, 0.5], throw), 1);
+    campaign(&Family::new("chain10", LONG, [1.0, 0.5], throw), 0..1);
 }
 
 /// Three to eight dominoes, the first of which is pushed; the others stand far away.
@@ -246,7 +247,7 @@ fn dominoes() {
         start.set(m, "ux1", random.between(0.0, 0.4));
         start.set(m, "uq1", random.between(2.0, 10.0));
     };
-    campaign(&Family::new("domino8", 0.5 * LONG, [0.8, 0.5], throw), 1);
+    campaign(&Family::new("domino8", 0.5 * LONG, [0.8, 0.5], throw), 0..1);
 }
 
 /// The first frames of 360 measured tosses of two boxes with a hinge.
@@ -279,7 +280,9 @@ fn hinged_boxes() {
         "J1 2e-4 J2 5e-4 J3 5.5e-4 K1 2e-4 K2 5e-4 K3 5.5e-4 r 3.2e-3",
     ];
     let tolerances = &[1e-12, 1e-10, 1e-9];
-    campaign(&Family { parameters, tolerances, ..Family::new("elbow", 1.5, [0.6, 0.5], toss) }, 1);
+    // In this one a box begins to tip while the forces at two of its corners fall to some nanonewtons, of which the
+    // Hessian of their barrier did not tell whether they press.
+    campaign(&Family { parameters, tolerances, ..Family::new("elbow", 1.5, [0.6, 0.5], toss) }, 36..37);
 }
 
 /// The same with hinges that damp, viscously and by friction.
@@ -295,7 +298,7 @@ fn damped_hinged_boxes() {
     let tolerances = &[1e-12, 1e-10, 1e-9];
     let family =
         Family { potential: false, parameters, tolerances, ..Family::new("elbow", 1.5, [0.6, 0.5], toss) };
-    campaign(&family, 1);
+    campaign(&family, 0..1);
 }
 
 #[test]
@@ -310,7 +313,7 @@ fn three_dominoes() {
         start.set(m, "ux1", random.between(0.0, 0.4));
         start.set(m, "uq1", random.between(0.0, 6.0));
     };
-    campaign(&Family::new("domino3", 1.5, [0.8, 0.5], throw), 3);
+    campaign(&Family::new("domino3", 1.5, [0.8, 0.5], throw), 0..3);
 }
 
 #[test]
@@ -323,7 +326,22 @@ fn quadrupeds() {
         }
         speeds(m, start, random, 0.5, 1.0);
     };
-    campaign(&Family { potential: false, ..Family::new("quadruped", 1.5, [1.0, 0.3], throw) }, 1);
+    // In this one slip begins after four events at one time, while that of two other feet is small.
+    campaign(&Family { potential: false, ..Family::new("quadruped", 1.5, [1.0, 0.3], throw) }, 2..3);
+}
+
+/// Two crossed rods that fall flat, all four ends at once, or hardly turned.
+#[test]
+fn scissors() {
+    let throw = |m: &InterpretedMechanism, start: &mut Start, random: &mut Random| {
+        start.set(m, "z", random.between(0.05, 0.3));
+        start.set(m, "th", random.between(0.3, 2.8));
+        if random.below(2) == 0 {
+            turn(m, start, random, ["e0", "e1", "e2", "e3"], Some(0.2));
+            speeds(m, start, random, 0.5, 2.0);
+        }
+    };
+    campaign(&Family::new("scissors", 2.0, [1.0, 0.6], throw), 0..4);
 }
 
 /// Every family is tried, and no name is misspelt.
@@ -339,6 +357,7 @@ fn the_models_have_contacts() {
         "chain10",
         "domino8",
         "elbow",
+        "scissors",
     ]
     .map(model);
     for mechanism in &families {

@@ -1,7 +1,7 @@
 //! Starts and questions at the edge of what is allowed: none may hang, panic, or give what is not so.
 
 use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
-use hodograph::{Contacts, Law, State, Surface};
+use hodograph::{Cause, Contacts, Law, State, Surface};
 use hodograph_simulation::{ContactPhase, Drive, Options, Progress, Simulation};
 
 const G: f64 = 9.81;
@@ -204,13 +204,18 @@ fn surfaces_at_their_limits() {
         }
     }
     let state = State { time: 0.0, coordinates: &[0.0; 3], speeds: &[0.0; 3], inputs: &[0.0] };
-    for (mu, e) in
-        [(-0.1, 0.5), (f64::NAN, 0.5), (f64::INFINITY, 0.5), (0.5, -0.1), (0.5, 1.1), (0.5, f64::NAN)]
-    {
+    for (mu, e, cause) in [
+        (-0.1, 0.5, Cause::NegativeFriction),
+        (f64::NAN, 0.5, Cause::NotFinite),
+        (f64::INFINITY, 0.5, Cause::NotFinite),
+        (0.5, -0.1, Cause::RestitutionOutOfRange),
+        (0.5, 1.1, Cause::RestitutionOutOfRange),
+        (0.5, f64::NAN, Cause::NotFinite),
+    ] {
         let surface = Surface { mu, e, law: Law::Newton };
         let options = Options { surface: Some(surface), ..Options::default() };
         let body: &dyn Contacts<f64> = &body;
-        assert_eq!(Simulation::new(body, &state, options).unwrap_err().kind.name(), "bad_option");
+        assert_eq!(Simulation::new(body, &state, options).unwrap_err().kind.name(), cause.name());
     }
 }
 

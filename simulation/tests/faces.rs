@@ -9,6 +9,7 @@ use hodograph_random::Random;
 use nalgebra::Vector3;
 
 use crate::ledge::block_on_ledge::BlockOnLedge;
+use crate::many::model;
 
 type V = [f64; 3];
 
@@ -168,6 +169,8 @@ struct Seen {
     faces: [usize; 2],
     edges: usize,
     others: usize,
+    /// of these so many with all neighbours, at which rates were compared
+    rates: usize,
 }
 
 /// Places of edges that are nearly parallel are known to rounding over the square of their angle.
@@ -218,6 +221,7 @@ fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
         }
         let contact = closest.unwrap_or_else(|| panic!("{nearest:?}"));
         let known = model.contact_state(contact, &state).unwrap();
+        // of the contacts that are valid all others are further
         worst = worst.max((gap(contact, &state) - nearest.distance).abs());
         let apart = sub3(nearest.points[0], nearest.points[1]);
         worst = worst.max(norm3(sub3(apart, scaled(known.normal.into(), nearest.distance))));
@@ -236,17 +240,19 @@ fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
             };
             (along(&q, &rates[0]), along(&u, &rates[1]))
         };
-        let (mut gap_rate, mut acceleration) = (0.0, Vector3::zeros());
+        let (mut gap_rate, mut acceleration, mut within) = (0.0, Vector3::zeros(), f64::INFINITY);
         for (steps, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
             let (q, u) = moved(steps * STEP);
             let there = State { coordinates: &q, speeds: &u, ..state };
             let weight = weight / (12.0 * STEP);
             gap_rate += weight * gap(contact, &there);
+            within = within.min(model.validity(contact, &there).unwrap().unwrap());
             acceleration += weight * model.contact_velocity(contact, &there).unwrap();
         }
         let free = model.free_acceleration(contact, &state).unwrap();
         // a place that is near an end may be beyond it at a neighbour
-        if model.validity(contact, &state).unwrap().unwrap() > 0.01 {
+        if within > 1e-7 {
+            seen.rates += 1;
             let near = 1.0 + free.norm();
             worst_rate[0] = worst_rate[0].max((gap_rate - known.velocity.x).abs());
             worst_rate[1] = worst_rate[1].max((acceleration - free).norm() / near.powi(2));
@@ -279,4 +285,48 @@ fn rectangles_on_rectangles() {
     };
     let seen = compare(&bodies, 10_000);
     assert!(seen.faces.iter().all(|&count| count > 300), "{seen:?}");
+}
+
+#[test]
+fn boxes_on_boxes() {
+    let crates = model("crate_on_table");
+    let bodies = Bodies {
+        model: &crates,
+        halves: [[0.15, 0.1, 0.12], [1.0, 0.1, 1.0]],
+        other: [-1.0, -0.1, 0.0],
+        place: |q| {
+            let e = [3, 4, 5, 6].map(|i| q[i]);
+            ([q[0], q[1], q[2]], [0, 1, 2].map(|i| turned(e, i)))
+        },
+        random: |random| {
+            let mut e: [f64; 4] = std::array::from_fn(|_| random.between(-1.0, 1.0));
+            while dot4(e, e) > 1.0 || dot4(e, e) < 0.01 {
+                e = std::array::from_fn(|_| random.between(-1.0, 1.0));
+            }
+            let size = dot4(e, e).sqrt();
+            let mut q = vec![
+                -1.0 + random.between(-1.4, 1.4),
+                -0.1 + random.between(-0.5, 0.5),
+                random.between(-1.4, 1.4),
+            ];
+            q.extend(e.map(|c| c / size));
+            (q, (0..6).map(|_| random.between(-1.0, 1.0)).collect())
+        },
+    };
+    let seen = compare(&bodies, 10_000);
+    assert!(seen.faces.iter().all(|&count| count > 200) && seen.edges > 2000, "{seen:?}");
+}
+
+fn dot4(a: [f64; 4], b: [f64; 4]) -> f64 {
+    (0..4).map(|i| a[i] * b[i]).sum()
+}
+
+/// An axis of a frame that a quaternion turns.
+fn turned([s, x, y, z]: [f64; 4], axis: usize) -> V {
+    let columns = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + s * z), 2.0 * (x * z - s * y)],
+        [2.0 * (x * y - s * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + s * x)],
+        [2.0 * (x * z + s * y), 2.0 * (y * z - s * x), 1.0 - 2.0 * (x * x + y * y)],
+    ];
+    columns[axis]
 }

@@ -10,6 +10,7 @@ mod common;
 mod contact_families;
 mod contact_problem;
 mod controller;
+mod crates;
 mod discs;
 mod edges;
 mod energy_under_poisson;

@@ -1,8 +1,11 @@
 //! One contact: answers that are known in closed form.
 
+use std::sync::Arc;
+
 use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
-use hodograph::Law;
-use hodograph_simulation::ContactPhase;
+
+use hodograph::{Law, State};
+use hodograph_simulation::{ContactPhase, Options, Simulation};
 
 const G: f64 = 9.81;
 
@@ -31,6 +34,20 @@ fn bounces_end_when_their_series_does() {
         assert_eq!(first(&events, "rest").contact, None);
         assert_eq!(simulation.speeds(), [0.0; 3]);
         assert!(simulation.coordinates()[1].abs() < 1e-15);
+    }
+}
+
+/// A function of the user that is no number ends the motion: it comes to no zero.
+#[test]
+fn event_functions_that_are_not_finite_are_refused() {
+    let body = particle();
+    for from in [0.0, 0.3] {
+        let watched = move |time: f64, _: &[f64], _: &[f64]| if time < from { 1.0 } else { f64::NAN };
+        let options = Options { events: vec![Arc::new(watched)], ..surface(0.0, 0.5, Law::Newton) };
+        let state = State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
+        let found = Simulation::new(&body, &state, options).and_then(|mut motion| motion.advance_to(1.0));
+        let error = found.unwrap_err();
+        assert!(error.to_string().contains("event function 0 is NaN"), "{error}");
     }
 }
 

@@ -1,8 +1,10 @@
-//! What forces of closed contacts follow from, by generated modules in one pass and by their single methods.
+//! What is asked of several contacts, by generated modules and interpreted models in one pass, and by their single
+//! methods: what forces of closed contacts follow from, gaps, and velocities.
 
-use hodograph::{ClosedContacts, ComponentKind, Contacts, State, StateError};
+use hodograph::nalgebra::Vector3;
+use hodograph::{ClosedContacts, ComponentKind, Contacts, Distance, State, StateError};
 
-use crate::{bipeds, bodies, table, tosses, tumbling};
+use crate::{bipeds, bodies, many, table, tosses, tumbling};
 
 /// Numbers of a mechanism with k contacts: rates of coordinates and of speeds, partial velocities, responses, velocities,
 /// free accelerations.
@@ -71,12 +73,39 @@ fn check(mechanism: &dyn Contacts<f64>) {
                 |numbers: Numbers| numbers.map(|list| list.into_iter().map(f64::to_bits).collect::<Vec<_>>());
             let alone = one_by_one(mechanism, contacts, &state).unwrap();
             assert_eq!(bits(together), bits(alone), "{} {contacts:?}", mechanism.name());
+            gaps_and_velocities(mechanism, contacts, &state);
         }
         let missing = in_one_pass(mechanism, &[all.len()], &state);
         assert!(matches!(missing, Err(StateError::Missing { .. })), "{missing:?}");
         let wrong = State { speeds: &u[1..], ..state };
         assert!(matches!(in_one_pass(mechanism, &all, &wrong), Err(StateError::Length { .. })));
     }
+}
+
+/// Gaps, validities and velocities have the same bits, too.
+fn gaps_and_velocities(mechanism: &dyn Contacts<f64>, contacts: &[usize], state: &State<'_>) {
+    let mut distances = vec![Distance::default(); contacts.len()];
+    let mut velocities = vec![Vector3::zeros(); contacts.len()];
+    mechanism.gaps(contacts, state, &mut distances).unwrap();
+    mechanism.contact_velocities(contacts, state, &mut velocities).unwrap();
+    let number = |length: Option<f64>| length.map(f64::to_bits);
+    for (&contact, (distance, velocity)) in contacts.iter().zip(distances.iter().zip(&velocities)) {
+        let (gap, validity) =
+            (mechanism.gap(contact, state).unwrap(), mechanism.validity(contact, state).unwrap());
+        let found = [distance.gap, distance.validity].map(number);
+        assert_eq!(found, [gap, validity].map(number), "{} {contact}", mechanism.name());
+        let alone = mechanism.contact_velocity(contact, state).unwrap();
+        assert_eq!(velocity.map(f64::to_bits), alone.map(f64::to_bits), "{} {contact}", mechanism.name());
+    }
+    let (too_few, too_many) = (&mut distances[..], &mut vec![Vector3::zeros(); contacts.len() + 1]);
+    if !too_few.is_empty() {
+        let wrong = mechanism.gaps(contacts, state, &mut too_few[1..]);
+        assert!(matches!(wrong, Err(StateError::Length { .. })), "{wrong:?}");
+    }
+    let wrong = mechanism.contact_velocities(contacts, state, too_many);
+    assert!(matches!(wrong, Err(StateError::Length { .. })), "{wrong:?}");
+    let missing = mechanism.gaps(&[usize::MAX, usize::MAX], state, &mut [Distance::default(); 2]);
+    assert!(matches!(missing, Err(StateError::Missing { .. })), "{missing:?}");
 }
 
 macro_rules! shipped {
@@ -97,6 +126,8 @@ fn one_pass_has_the_bits_of_the_single_methods() {
     check(&bipeds::biped::Biped::<f64>::default());
     check(&tosses::measured_cube::MeasuredCube::<f64>::default());
     check(&table::table::Table::<f64>::default());
+    check(&many::model("two_blocks"));
+    check(&many::model("crate_on_table"));
     let mut checked = 0;
     for mechanism in shipped() {
         let count = |kind| mechanism.count(kind);

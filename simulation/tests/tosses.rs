@@ -95,7 +95,7 @@ fn outcomes_do_not_depend_on_threads_or_order() {
     let (cube, starts) = (MeasuredCube::<f64>::default(), starts());
     let starts = &starts[..starts.len().min(8)];
     let on = |threads: usize| {
-        let batch = Batch { threads: Some(threads), watch: None };
+        let batch = Batch { threads: Some(threads), ..Batch::default() };
         tossed(&cube, starts, 1e-9, |row| row, &batch)
     };
     let one = on(1);
@@ -118,11 +118,12 @@ fn rows_fail_alone_and_batches_end_when_told() {
     starts[1].0[2] = -1.0;
     starts[2].1[0] = f64::NAN;
     let watch = Watch::new();
-    let some = tossed(&cube, &starts, 1e-9, |row| row, &Batch { threads: None, watch: Some(&watch) });
-    assert_eq!((some[1].kind(), some[2].kind(), watch.done()), ("overlap", "bad_option", 4));
+    let some = tossed(&cube, &starts, 1e-9, |row| row, &Batch { watch: Some(&watch), ..Batch::default() });
+    assert_eq!((some[1].kind(), some[2].kind(), watch.done()), ("overlap", "not_finite", 4));
     assert_eq!((&some[0], &some[3]), (&all[0], &all[3]));
     watch.cancel();
     assert!(
-        tossed(&cube, &starts, 1e-9, |row| row, &Batch { threads: None, watch: Some(&watch) }).is_empty()
+        tossed(&cube, &starts, 1e-9, |row| row, &Batch { watch: Some(&watch), ..Batch::default() })
+            .is_empty()
     );
 }

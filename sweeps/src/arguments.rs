@@ -15,17 +15,17 @@ use crate::short::{self, Draw, Set, Short, Vary};
 #[derive(Debug, Parser)]
 #[command(name = "hodograph-sweep", version)]
 pub struct Arguments {
-    /// what to do
+    /// the command
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Run a query, or a sweep in short form
     Run(Box<Run>),
-    /// List the SQL functions and the fields that they take and give
+    /// List the SQL functions, with the fields of their arguments and results
     Functions {
         /// models of your own, with derivations beside them
         #[arg(long, value_name = "FILE.mech")]
@@ -33,7 +33,7 @@ pub enum Command {
         /// the function to describe
         name: Option<String>,
     },
-    /// Compare the rows of Parquet files with the digests that the files state
+    /// Compare the rows of Parquet files with the digests that are stored in the files
     Verify {
         /// the files
         #[arg(required = true)]
@@ -41,16 +41,17 @@ pub enum Command {
     },
     /// Distribute queries to executors
     Scheduler {
-        /// where it listens
+        /// the address to listen on
         #[arg(long, default_value = "127.0.0.1:50050")]
         listen: SocketAddr,
-        /// the name by which executors reach it; default: the address of --listen
+        /// the host name under which executors reach it; default: the address of --listen
         #[arg(long)]
         host: Option<String>,
-        /// seconds without sign of life after which an executor's work is given to others
+        /// seconds without a heartbeat after which the work of an executor is given to others
         #[arg(long, default_value_t = 20)]
         patience: u64,
-        /// a directory whose files clients may read, here and on executors; may be given several times [default: none]
+        /// a directory whose files clients may read, here and on executors; may be given several times
+        /// [default: none]
         #[arg(long, value_name = "DIRECTORY")]
         files: Vec<PathBuf>,
     },
@@ -59,19 +60,19 @@ pub enum Command {
         /// HOST:PORT of the scheduler
         #[arg(long, default_value = "127.0.0.1:50050")]
         scheduler: String,
-        /// where it hands out results; the port above it is used too
+        /// the address on which it offers results; the next port is used, too
         #[arg(long, default_value = "127.0.0.1:50060")]
         listen: SocketAddr,
-        /// the name by which others reach it; default: the address of --listen
+        /// the host name under which others reach it; default: the address of --listen
         #[arg(long)]
         host: Option<String>,
-        /// threads that compute; default: all cores
+        /// number of threads; default: all cores
         #[arg(long)]
         cores: Option<usize>,
-        /// memory for sorts, groups and joins before they spill to disk, as 2G
+        /// memory for sorts, groups and joins before they spill to disk, such as 2G
         #[arg(long, default_value = "2G", value_parser = bytes)]
         memory: usize,
-        /// the directory for results that wait to be fetched
+        /// the directory for results until they are fetched
         #[arg(long, value_name = "DIRECTORY")]
         work: Option<PathBuf>,
     },
@@ -80,32 +81,32 @@ pub enum Command {
 /// The arguments of `run`.
 #[derive(Debug, Args)]
 pub struct Run {
-    /// file with the query; statements that make tables may stand before it
+    /// file with the query, which may follow statements that create tables
     query: Option<PathBuf>,
     /// the query itself
     #[arg(long, conflicts_with = "query", allow_hyphen_values = true)]
     sql: Option<String>,
-    /// short form: the model, by its name in models/ or as a file; with a query: a file whose functions it
-    /// calls
+    /// short form: the model, by its name in models/ or as a file; with a query: a file whose functions the
+    /// query calls
     #[arg(long, value_name = "NAME or FILE.mech")]
     model: Vec<String>,
-    /// short form: a grid of values of a field, both ends included
+    /// short form: a grid of values of a field, including both ends
     #[arg(long, value_name = "NAME=LOW:HIGH:COUNT")]
     vary: Vec<Vary>,
-    /// short form: a field that is drawn for each collision; default: the independent speeds, from -1 to 1
+    /// short form: a field that is random for each collision; default: the independent speeds, from -1 to 1
     #[arg(long, value_name = "NAME=LOW:HIGH", allow_hyphen_values = true)]
     draw: Vec<Draw>,
     /// short form: a field that is the same for all collisions; default: mu=0.5, e=0.5, law=stronge and the
     /// model's initial state
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Set>,
-    /// short form: how many collisions, as 1e9
+    /// short form: the number of collisions, such as 1e9
     #[arg(long, value_parser = short::count, value_name = "COUNT")]
     sample: Option<i64>,
-    /// short form: the seed of what is drawn
+    /// short form: the seed of random fields
     #[arg(long, default_value_t = 0)]
     seed: i64,
-    /// short form: how to draw
+    /// short form: the random sequence
     #[arg(long, default_value = "uniform", value_parser = ["uniform", "sobol"])]
     sampler: String,
     /// short form: show the query and stop
@@ -117,24 +118,24 @@ pub struct Run {
     /// run on a Ballista cluster inside this process
     #[arg(long)]
     in_process: bool,
-    /// threads that compute; default: all cores
+    /// number of threads; default: all cores
     #[arg(long)]
     cores: Option<usize>,
-    /// memory for sorts, groups and joins before they spill to disk, as 2G
+    /// memory for sorts, groups and joins before they spill to disk, such as 2G
     #[arg(long, default_value = "2G", value_parser = bytes)]
     memory: usize,
-    /// compute the rows of rows(n) in so many parts, each kept in a file; the same command goes on after an
-    /// interruption
+    /// compute the rows of rows(n) in this number of parts, each stored in a file; the same command continues
+    /// after an interruption
     #[arg(long, value_name = "COUNT")]
     parts: Option<i64>,
-    /// file with the query that makes the answer of the table `parts`; default: the parts follow each other
-    /// in the directory --out
+    /// file with the query that computes the answer from the table `parts`; default: the parts are written
+    /// one after the other to the directory --out
     #[arg(long, value_name = "FILE.sql")]
     merge: Option<PathBuf>,
     /// write the answer to this file, .parquet or .csv
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// no report of progress
+    /// do not report progress
     #[arg(long)]
     quiet: bool,
 }
@@ -152,11 +153,11 @@ fn bytes(text: &str) -> Result<usize, String> {
     size.ok_or_else(|| format!("`{text}` is no size; expected a whole number with K, M or G, as 2G"))
 }
 
-/// All cores, or those asked for.
+/// The given number of threads, or all cores.
 ///
 /// # Errors
 ///
-/// None at all.
+/// The number is zero.
 pub fn cores(given: Option<usize>) -> Result<usize, Failure> {
     match given {
         Some(0) => Err(Failure::Input("--cores must be at least 1".to_owned())),

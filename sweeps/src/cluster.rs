@@ -1,4 +1,4 @@
-//! The processes of a cluster: Ballista's scheduler and executor with our functions.
+//! The processes of a cluster: Ballista's scheduler and executor with the functions of this package.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -19,17 +19,17 @@ use crate::models::shipped;
 use crate::session;
 use crate::stdout;
 
-/// Seconds between the signs of life of an executor.
+/// Seconds between the heartbeats of an executor.
 pub const HEARTBEAT: u64 = 2;
 
 /// The scheduler's arguments.
 #[derive(Clone, Debug)]
 pub struct Scheduler {
-    /// where it listens
+    /// the address to listen on
     pub listen: SocketAddr,
-    /// the name by which executors reach it
+    /// the host name under which executors reach it
     pub host: String,
-    /// seconds after which an executor without sign of life is given up, and its work done again by others
+    /// seconds without a heartbeat after which the work of an executor is given to others
     pub patience: u64,
     /// the directories whose files clients may read
     pub files: Vec<PathBuf>,
@@ -56,7 +56,7 @@ pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
     config.override_physical_codec = Some(Arc::new(Physical::default()));
     let failed =
         |error: String| Failure::Engine(format!("the scheduler at {} stopped: {error}", given.listen));
-    // a clear word before the engine's own
+    // a clear message before that of the engine
     drop(tokio::net::TcpListener::bind(given.listen).await.map_err(|error| failed(error.to_string()))?);
     let cluster =
         BallistaCluster::new_from_config(&config).await.map_err(|error| failed(error.to_string()))?;
@@ -70,23 +70,23 @@ pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
 pub struct Executor {
     /// host and port of the scheduler
     pub scheduler: String,
-    /// where it hands out results
+    /// the address on which it offers results
     pub listen: SocketAddr,
-    /// the name by which others reach it
+    /// the host name under which others reach it
     pub host: String,
-    /// threads that compute
+    /// number of threads
     pub cores: usize,
-    /// bytes that its tasks may hold before they spill
+    /// bytes that its tasks may hold before they spill to disk
     pub memory: u64,
-    /// where results wait until they are fetched
+    /// the directory for results until they are fetched
     pub work: PathBuf,
 }
 
-/// Runs an executor until it is told to stop.
+/// Runs an executor until it is stopped.
 ///
 /// # Errors
 ///
-/// A scheduler that does not answer; the engine's.
+/// The scheduler does not answer; errors of the engine.
 pub async fn executor(given: &Executor) -> Result<(), Failure> {
     let Some((host, port)) =
         given.scheduler.rsplit_once(':').and_then(|(host, port)| Some((host, port.parse().ok()?)))

@@ -1,6 +1,6 @@
-//! How `rows(n)` and models travel to the processes of a cluster: a table of rows as two numbers, a shipped
+//! Serialises `rows(n)` and models for the processes of a cluster: a table of rows as two numbers, a shipped
 //! model as its digest, a user's model as its two texts. So every process computes with the same model, or
-//! says that it has another one.
+//! reports that it has another one.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -39,7 +39,7 @@ fn decode_range(buf: &[u8]) -> Option<(Range, bool)> {
     Some((Range { first: i64::from_le_bytes(*first), end: i64::from_le_bytes(*end) }, *column != 0))
 }
 
-/// A model function as bytes; other functions are found by their names.
+/// A model function as bytes; other functions are found by name.
 fn encode_function(function: &ScalarUDF, buf: &mut Vec<u8>) {
     let Some(function) = of_model(function) else { return };
     let model = &function.model;
@@ -52,7 +52,7 @@ fn encode_function(function: &ScalarUDF, buf: &mut Vec<u8>) {
     }
 }
 
-/// The models that came with plans, by digest: each is decoded once.
+/// The models that were received with plans, by digest, so that each is decoded once.
 fn arrived() -> &'static Mutex<HashMap<[u8; 32], Arc<Model>>> {
     static ARRIVED: OnceLock<Mutex<HashMap<[u8; 32], Arc<Model>>>> = OnceLock::new();
     ARRIVED.get_or_init(Mutex::default)

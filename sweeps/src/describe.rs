@@ -26,7 +26,7 @@ histogram(x, low, high, bins)          aggregate: counts below, in the bins, and
 ///
 /// # Errors
 ///
-/// A model that is none, a name that nobody has.
+/// A file is not a model; a function does not exist.
 pub fn functions(own: &[PathBuf], name: Option<&str>) -> Result<String, Failure> {
     let models = session::models(own)?;
     let all = || models.iter().flat_map(|model| Routine::ALL.map(|routine| (model, routine)));

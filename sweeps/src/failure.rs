@@ -1,17 +1,17 @@
-//! Why the tool stops, and the exit status that scripts see.
+//! The errors of the tool, and the exit status that scripts see.
 
 use std::fmt;
 
 use datafusion::error::DataFusionError;
 
-/// Why the tool stops.
+/// The reason why the tool stops.
 #[derive(Debug)]
 pub enum Failure {
     /// arguments, a query or a model are wrong: status 2
     Input(String),
     /// the engine, a file or the network failed: status 1
     Engine(String),
-    /// whoever reads the output has enough: status 0
+    /// the reader of standard output has closed it: status 0
     ReaderGone,
 }
 

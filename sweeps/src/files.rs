@@ -1,4 +1,5 @@
-//! Files that plans read: which they are, what they hold, and which of them a scheduler lets its clients read.
+//! The files that plans read: their places, their contents, and which of them a scheduler lets its clients
+//! read.
 
 use std::any::Any;
 use std::fmt::Write;
@@ -16,7 +17,7 @@ use sha2::{Digest, Sha256};
 
 use crate::failure::Failure;
 
-/// The places from which a plan reads files, also in its subqueries.
+/// The places from which a plan, including its subqueries, reads files.
 ///
 /// # Errors
 ///
@@ -37,7 +38,7 @@ pub fn places(plan: &LogicalPlan) -> Result<Vec<ListingTableUrl>> {
     Ok(found)
 }
 
-/// What the files at these places hold: a line for each with its size and a hash of its content.
+/// The contents of the files at these places: a line for each with its size and a hash.
 ///
 /// # Errors
 ///
@@ -60,7 +61,7 @@ pub fn contents(places: &[ListingTableUrl]) -> std::result::Result<String, Failu
     Ok(out)
 }
 
-/// The files at a path: itself, or all in the directory.
+/// The files at a path: the file itself, or all files in the directory.
 fn walk(path: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     if !path.metadata()?.is_dir() {
         files.push(path.to_owned());
@@ -88,8 +89,9 @@ fn content(file: &Path) -> std::io::Result<(u64, String)> {
     Ok((size, hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()))
 }
 
-/// Refuses, on the scheduler, what a client must not ask for: files outside of the directories that were named, and statements
-/// that change or write anything. A client of ours refuses such statements itself, but anybody may write another client.
+/// Refuses on the scheduler what a client must not do: reading files outside of the given directories, and
+/// statements that change or write anything. The client of this package refuses such statements itself, but
+/// other clients may not.
 #[derive(Debug)]
 pub struct NamedFiles {
     roots: Vec<PathBuf>,
@@ -115,7 +117,8 @@ impl NamedFiles {
 
     fn allows(&self, place: &ListingTableUrl) -> bool {
         let Ok(path) = place.get_url().to_file_path() else { return false };
-        // Where links lead counts. What is not on this machine is looked for by its name, without steps upwards.
+        // The targets of links count. Files that are not on this machine are identified by their paths, which
+        // must not contain `..`.
         let upwards = path.components().any(|part| part == std::path::Component::ParentDir);
         let path = path.canonicalize().unwrap_or(path);
         !upwards && self.roots.iter().any(|root| path.starts_with(root))

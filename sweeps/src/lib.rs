@@ -1,9 +1,9 @@
-//! Sweeps of collisions as SQL: DataFusion embedded, or Ballista across machines, with the collisions of
-//! mechanisms as functions of its columns.
+//! Sweeps of collisions as SQL: DataFusion in the process, or Ballista across machines, with the collisions
+//! of mechanisms as SQL functions.
 //!
-//! `docs/sweeps.md` describes the tool `hodograph-sweep`; the files of this package each know one thing, in
-//! the order in which they build on each other: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`, `files`,
-//! `session`, `cluster`, `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
+//! `docs/sweeps.md` describes the tool `hodograph-sweep`. The modules of this package, each built on the
+//! previous ones: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`, `files`, `session`, `cluster`,
+//! `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
 
 pub mod arguments;
 pub mod cluster;

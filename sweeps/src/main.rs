@@ -8,14 +8,14 @@ use hodograph_sweeps::arguments::{Arguments, Command, cores};
 use hodograph_sweeps::failure::Failure;
 use hodograph_sweeps::{cluster, describe, output, run, stdout};
 
-/// Deep plans are deep recursions.
+/// Stack size: deep plans are processed recursively.
 const STACK: usize = 16 << 20;
 
 fn main() -> ExitCode {
     match act(Arguments::parse().command) {
         Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
         Err(failure) => {
-            // the status says it too, where nobody reads
+            // the exit status reports it, too, if nobody reads the message
             let _ = writeln!(std::io::stderr(), "error: {failure}");
             ExitCode::from(failure.status())
         }
@@ -52,7 +52,7 @@ fn act(command: Command) -> Result<(), Failure> {
                 cluster::Executor { scheduler, listen, host, cores: threads, memory: memory as u64, work };
             let done = runtime(threads + 1)?.block_on(cluster::executor(&given));
             if own {
-                // Results that nobody fetches any more.
+                // Results that nobody will fetch any more.
                 let _ = std::fs::remove_dir_all(&given.work);
             }
             done
@@ -66,7 +66,7 @@ fn verify(files: &[std::path::PathBuf]) -> Result<(), Failure> {
         match stated {
             Some(stated) if stated == found => {
                 match stdout::line(format_args!("{}: {found}, as stated", file.display())) {
-                    // the status speaks of all files, also where nobody reads
+                    // the exit status covers all files, even if nobody reads the messages
                     Ok(()) | Err(Failure::ReaderGone) => {}
                     Err(failure) => return Err(failure),
                 }

@@ -29,11 +29,11 @@ impl Model {
         Model { name, model, derivation, shipped, loaded: OnceLock::new() }
     }
 
-    /// A user's model file; the derivation stands beside it.
+    /// Reads a user's model file with the derivation beside it.
     ///
     /// # Errors
     ///
-    /// What is wrong with the file, its name or its derivation.
+    /// The mistake in the file, its name or its derivation.
     pub fn read(path: &Path) -> Result<Self, String> {
         let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         let word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -50,7 +50,7 @@ impl Model {
         let source = files::model(path);
         let model = match source.expansion() {
             None => text(path, "")?,
-            // a cluster has texts and no folders: what the model imports is written out
+            // the processes of a cluster have no folders, so the imports of the model are written out
             Some(_) => {
                 let found = check::check(&source);
                 if found.mechanism.is_none() {
@@ -70,7 +70,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// What is wrong with the model or its derivation.
+    /// The mistake in the model or its derivation.
     pub fn mechanism(&self) -> Result<&InterpretedMechanism, String> {
         self.loaded.get_or_init(|| self.load()).as_ref().map_err(Clone::clone)
     }
@@ -88,7 +88,7 @@ impl Model {
         InterpretedMechanism::new(mechanism, program).map_err(|error| error.to_string())
     }
 
-    /// The digest of both texts, by which processes find out whether they mean the same model.
+    /// The digest of both texts, by which processes check that they use the same model.
     pub fn digest(&self) -> [u8; 32] {
         Sha256::new()
             .chain_update(&self.model)

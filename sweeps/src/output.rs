@@ -1,5 +1,5 @@
-//! Results as files. A file is written beside its place under another name and takes its place when it is
-//! whole, so that nothing half-written is ever found there; and it knows its digest.
+//! Results as files. A file is written under a temporary name and renamed when it is complete, so that no
+//! partial file has its name; and it contains its digest.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -21,7 +21,7 @@ use crate::functions::hash_rows;
 const DIGEST: &str = "hodograph.digest";
 const ROWS: &str = "hodograph.rows";
 
-/// The order-free digest of rows: how many there are, and the sum of their hashes modulo 2^64.
+/// The digest of rows, independent of their order: their number, and the sum of their hashes modulo 2^64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Digest {
     /// number of rows
@@ -31,7 +31,7 @@ pub struct Digest {
 }
 
 impl Digest {
-    /// Counts the rows of a batch in.
+    /// Adds the rows of a batch.
     ///
     /// # Errors
     ///
@@ -55,10 +55,10 @@ impl std::fmt::Display for Digest {
     }
 }
 
-/// What a file says of its origin: names and texts.
+/// The metadata on the origin of a file: names and texts.
 pub type Origin = Vec<(String, String)>;
 
-/// Where rows of a sweep come from.
+/// The origin of the rows of a sweep.
 pub fn origin(sql: &str) -> Origin {
     let fused = if cfg!(target_feature = "fma") { "with" } else { "without" };
     let target = format!("{}, {fused} fused multiply-add", std::env::consts::ARCH);
@@ -88,12 +88,12 @@ fn beside(path: &Path, end: &str) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Whether a result can be put there: as `.parquet` or `.csv`, in a directory that exists, where nothing else
-/// is.
+/// Checks that a result can be written there: as `.parquet` or `.csv`, in an existing directory, as a new
+/// file.
 ///
 /// # Errors
 ///
-/// Why not.
+/// The reason why it cannot.
 pub fn check(path: &Path) -> Result<(), Failure> {
     let known = matches!(path.extension().and_then(|end| end.to_str()), Some("parquet" | "csv"));
     if !known {
@@ -121,7 +121,7 @@ impl Sink {
     ///
     /// # Errors
     ///
-    /// A name that says neither Parquet nor CSV, a place where nothing can be written.
+    /// The name ends neither in `.parquet` nor in `.csv`, or the file cannot be written.
     pub fn create(target: &Path, schema: &SchemaRef, origin: Origin) -> Result<Self, Failure> {
         check(target)?;
         let temporary = beside(target, ".partial");
@@ -145,14 +145,14 @@ impl Sink {
     ///
     /// # Errors
     ///
-    /// A full disk; a type of which no digest is defined.
+    /// The disk is full, or a type has no digest.
     pub fn write(&mut self, batch: &RecordBatch) -> Result<(), Failure> {
         self.digest.add(batch)?;
         let target = &self.target;
         match &mut self.writer {
             Some(Writer::Parquet(writer)) => {
                 writer.write(batch).map_err(|error| Failure::file(target, "write", error))?;
-                // what is buffered is bounded by bytes too, not by rows alone
+                // the buffer is bounded by bytes as well as by rows
                 if writer.in_progress_size() > 64 << 20 {
                     writer.flush().map_err(|error| Failure::file(target, "write", error))?;
                 }
@@ -165,11 +165,11 @@ impl Sink {
         }
     }
 
-    /// Ends the file and puts it into its place.
+    /// Completes the file and renames it.
     ///
     /// # Errors
     ///
-    /// A full disk.
+    /// The disk is full.
     pub fn finish(mut self) -> Result<Digest, Failure> {
         let target = self.target.clone();
         let failed = |error: &dyn std::fmt::Display| Failure::file(&target, "write", error);
@@ -195,11 +195,11 @@ impl Sink {
         }
         let placed = self.file.sync_all().and_then(|()| std::fs::rename(&self.temporary, &target));
         placed.map_err(|error| {
-            // A digest without its file would speak of nothing; a Parquet file has none beside it.
+            // A digest without its file would be useless; a Parquet file contains its own.
             let _ = std::fs::remove_file(beside(&target, ".digest"));
             failed(&error)
         })?;
-        // what is dropped now is no partial file any more
+        // the file is complete now, so dropping must not remove it
         self.temporary = PathBuf::new();
         Ok(self.digest)
     }
@@ -209,17 +209,17 @@ impl Drop for Sink {
     fn drop(&mut self) {
         if !self.temporary.as_os_str().is_empty() {
             self.writer = None;
-            // nothing better can be done where this fails too
+            // errors cannot be handled here
             let _ = std::fs::remove_file(&self.temporary);
         }
     }
 }
 
-/// Writes a small text so that it is there whole or not at all.
+/// Writes a small text, completely or not at all.
 ///
 /// # Errors
 ///
-/// A full disk.
+/// The disk is full.
 pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
     let temporary = beside(path, ".partial");
     let write = || {
@@ -233,8 +233,8 @@ pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
     })
 }
 
-/// The rows with the fields of structs as columns of their own, `c_kind` for the field `kind` of `c`; lists
-/// as text.
+/// The rows with the fields of structs as separate columns, `c_kind` for the field `kind` of `c`; lists as
+/// text.
 ///
 /// # Errors
 ///
@@ -275,11 +275,11 @@ fn spread(
     Ok(())
 }
 
-/// The digest that a Parquet file states, if it states one, and that of its rows.
+/// The digest that a Parquet file contains, if any, and that of its rows.
 ///
 /// # Errors
 ///
-/// A file that cannot be read.
+/// The file cannot be read.
 pub fn digests(path: &Path) -> Result<(Option<Digest>, Digest), Failure> {
     let (stated, reader) = open(path)?;
     let mut found = Digest::default();
@@ -289,11 +289,11 @@ pub fn digests(path: &Path) -> Result<(Option<Digest>, Digest), Failure> {
     Ok((stated, found))
 }
 
-/// The digest that a Parquet file states, without reading its rows.
+/// The digest that a Parquet file contains, without reading its rows.
 ///
 /// # Errors
 ///
-/// A file that cannot be read.
+/// The file cannot be read.
 pub fn stated(path: &Path) -> Result<Option<Digest>, Failure> {
     open(path).map(|(stated, _)| stated)
 }

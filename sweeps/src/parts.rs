@@ -1,5 +1,4 @@
-//! A sweep in parts: each part of the rows is a file of its own, so that a sweep that was interrupted goes on
-//! where it stopped.
+//! A sweep in parts: each part of the rows is a separate file, so that an interrupted sweep can be continued.
 
 use std::path::{Path, PathBuf};
 
@@ -13,17 +12,17 @@ use crate::output;
 /// The directory of the parts.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// where they are
+    /// the directory
     pub directory: PathBuf,
 }
 
 impl Parts {
-    /// The parts of a sweep: the directory is made, or found as an earlier run of the same sweep left it. `inputs` says what the
-    /// files hold that it reads.
+    /// Opens the parts of a sweep: creates the directory, or uses that of an earlier run of the same sweep.
+    /// `inputs` describes the contents of the files that the sweep reads.
     ///
     /// # Errors
     ///
-    /// A directory of another sweep.
+    /// The directory belongs to another sweep.
     pub fn open(
         directory: &Path,
         count: i64,
@@ -70,11 +69,11 @@ impl Parts {
         self.directory.join(format!("part-{index:06}.parquet"))
     }
 
-    /// Whether a part is there, whole.
+    /// Whether a part is complete.
     ///
     /// # Errors
     ///
-    /// A file that somebody damaged.
+    /// A file is damaged.
     pub fn is_done(&self, index: i64) -> Result<bool, Failure> {
         let file = self.file(index);
         match file.exists() {
@@ -90,11 +89,11 @@ impl Parts {
     }
 }
 
-/// Whether the answer for all rows is that for its parts, one after the other.
+/// Checks that the answer for all rows is the concatenation of the answers for the parts.
 ///
 /// # Errors
 ///
-/// What in the plan looks at several rows.
+/// The operation of the plan that depends on several rows.
 pub fn row_by_row(plan: &LogicalPlan) -> Result<(), Failure> {
     let mut culprit = None;
     plan.apply(|node| {

@@ -1,4 +1,5 @@
-//! How far a sweep is: part done, rows per second and the time that is left, on standard error.
+//! Reports the progress of a sweep on standard error: the completed part, rows per second and the remaining
+//! time.
 
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::Ordering;
@@ -6,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::rows::COUNTED;
 
-/// The report of a sweep of so many rows.
+/// The progress of a sweep with a number of rows.
 #[derive(Clone, Debug)]
 pub struct Progress {
     started: Instant,
@@ -14,7 +15,7 @@ pub struct Progress {
     quiet: bool,
 }
 
-/// A span of time as people say it.
+/// A time span for readers.
 pub fn span(seconds: f64) -> String {
     match seconds {
         ..90.0 => format!("{seconds:.0} s"),
@@ -24,7 +25,7 @@ pub fn span(seconds: f64) -> String {
 }
 
 impl Progress {
-    /// Begins now.
+    /// Starts the clock.
     pub fn new(total: u64, quiet: bool) -> Self {
         Progress { started: Instant::now(), total, quiet }
     }
@@ -34,7 +35,7 @@ impl Progress {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Says how far it is; `skipped` rows were done before.
+    /// Reports the progress; `skipped` rows were completed before.
     pub fn say(&self, done: u64, skipped: u64) {
         if self.quiet || self.total == 0 {
             return;
@@ -51,8 +52,8 @@ impl Progress {
         write_line(&line);
     }
 
-    /// Reports from time to time what this process counts, until it is dropped. `before` rows were counted
-    /// before.
+    /// Reports periodically the rows that this process counts, until it is dropped. `before` rows were
+    /// counted before.
     pub async fn watch(self, before: u64) {
         loop {
             tokio::time::sleep(pause()).await;
@@ -60,8 +61,8 @@ impl Progress {
         }
     }
 
-    /// Reports from time to time, until it is dropped, for how long other processes have been at work: how
-    /// many of the rows they have done is known between parts only.
+    /// Reports periodically how long other processes have been working, until it is dropped; the number of
+    /// completed rows is known only between parts.
     pub async fn wait(self) {
         loop {
             tokio::time::sleep(pause()).await;
@@ -80,15 +81,15 @@ fn pause() -> Duration {
     Duration::from_secs(if std::io::stderr().is_terminal() { 1 } else { 10 })
 }
 
-/// Writes a report; on a terminal over the one before.
+/// Writes a report; on a terminal it replaces the previous one.
 fn write_line(line: &str) {
     let mut out = std::io::stderr().lock();
-    // a report that cannot be written is no reason to stop
+    // errors of writing a report are ignored
     let _ = if out.is_terminal() { write!(out, "\r{line}   ") } else { writeln!(out, "{line}") };
     let _ = out.flush();
 }
 
-/// The most memory that this process had so far, MB, where the system tells it.
+/// The peak memory of this process, MB, if the system provides it.
 pub fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

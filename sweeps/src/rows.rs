@@ -1,5 +1,5 @@
 //! `rows(n)`: the table of the row numbers 0 to n - 1 in the column `i`. Nothing is stored: every partition
-//! counts for itself, batch by batch.
+//! generates its rows batch by batch.
 
 use std::fmt;
 use std::sync::atomic::{AtomicI64, AtomicU64, AtomicUsize, Ordering};
@@ -20,12 +20,12 @@ use datafusion::physical_plan::stream::RecordBatchStreamAdapter;
 use datafusion::physical_plan::{DisplayAs, DisplayFormatType, ExecutionPlan, Partitioning, PlanProperties};
 use futures::{Stream, StreamExt, TryStreamExt, stream};
 
-/// A partition has at least so many rows, unless it is the only one.
+/// The smallest partition, unless it is the only one.
 const LEAST: i64 = 1 << 16;
-/// More partitions than these help nobody on the machines that one scheduler plans for.
+/// The largest number of partitions; more do not help on the machines of one scheduler.
 const MOST: i64 = 64;
 
-/// How many rows this process has counted so far, for the report of progress.
+/// Number of rows that this process has generated, for the report of progress.
 pub static COUNTED: AtomicU64 = AtomicU64::new(0);
 
 /// The rows from `first` up to, not including, `end`.
@@ -55,18 +55,18 @@ fn schema() -> SchemaRef {
     Arc::new(Schema::new(vec![Field::new("i", DataType::Int64, false)]))
 }
 
-/// The table function. The tool tells it which part of the rows a query sees.
+/// The table function. The tool sets the part of the rows that a query sees.
 #[derive(Debug, Default)]
 pub struct RowsFunction {
     part: Mutex<Option<(i64, i64)>>,
-    /// how often queries called it
+    /// number of calls by queries
     pub calls: AtomicUsize,
     /// `n` of the latest call
     pub total: AtomicI64,
 }
 
 impl RowsFunction {
-    /// From now on queries see this part of so many; `None`: all rows.
+    /// Sets the part of the rows that queries see, and the number of parts; `None`: all rows.
     pub fn see(&self, part: Option<(i64, i64)>) {
         *self.part.lock().unwrap_or_else(PoisonError::into_inner) = part;
     }
@@ -125,8 +125,8 @@ impl TableProvider for RowsTable {
     }
 }
 
-/// The ranges of the partitions, which depend on the rows alone, as a plan with one row in each partition. A
-/// scheduler knows how to give each task its own partitions of such a plan.
+/// The ranges of the partitions, which depend only on the rows, as a plan with one row per partition. A
+/// scheduler can assign the partitions of such a plan to tasks.
 fn ranges(all: Range) -> Result<Arc<dyn ExecutionPlan>> {
     let field = |name| Field::new(name, DataType::Int64, false);
     let schema = Arc::new(Schema::new(vec![field("first"), field("end")]));
@@ -142,17 +142,17 @@ fn ranges(all: Range) -> Result<Arc<dyn ExecutionPlan>> {
     Ok(plan)
 }
 
-/// The plan that counts: the rows of the range that its input has in each partition.
+/// The plan that generates the rows of the range in each partition of its input.
 #[derive(Debug)]
 pub struct RowsExec {
     ranges: Arc<dyn ExecutionPlan>,
-    /// whether it writes the column, or only how many rows there are
+    /// whether it generates the column, or only the number of rows
     pub column: bool,
     properties: Arc<PlanProperties>,
 }
 
 impl RowsExec {
-    /// Counts the rows of these ranges.
+    /// Generates the rows of these ranges.
     pub fn new(ranges: Arc<dyn ExecutionPlan>, column: bool) -> Self {
         let schema = if column { schema() } else { Arc::new(Schema::empty()) };
         let properties = PlanProperties::new(
@@ -172,7 +172,7 @@ impl RowsExec {
     }
 }
 
-/// Counts the rows of a range, batch by batch.
+/// Generates the rows of a range, batch by batch.
 fn count(
     range: Range,
     batch: i64,
@@ -191,14 +191,14 @@ fn count(
             (batch.map_err(Into::into), end)
         });
         async move {
-            // others get their turn after every batch
+            // let other tasks run after every batch
             tokio::task::yield_now().await;
             next
         }
     })
 }
 
-/// The ranges that the rows of the input stand for.
+/// The ranges that the rows of the input describe.
 fn ranges_of(batch: &RecordBatch) -> Vec<Range> {
     let column = |index: usize| batch.column(index).as_primitive::<Int64Type>();
     (0..batch.num_rows())

@@ -1,4 +1,4 @@
-//! Runs a query: plans it, streams its rows into a file or a summary, in parts where that is asked for.
+//! Runs a query: plans it, and writes its rows to a file or a summary, in parts if requested.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -24,27 +24,27 @@ use crate::rows::{COUNTED, RowsFunction};
 use crate::session::{Engine, Setup};
 use crate::stdout;
 
-/// So many rows of the answer are shown.
+/// The largest number of rows that are shown.
 const SHOWN: usize = 40;
 
 /// A sweep.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// where it runs
+    /// the engine
     pub setup: Setup,
-    /// statements that make tables, if any, then one query
+    /// statements that create tables, if any, then one query
     pub sql: String,
-    /// how many parts
+    /// number of parts
     pub parts: Option<i64>,
-    /// makes the answer of the table `parts`
+    /// the query that computes the answer from the table `parts`
     pub merge: Option<String>,
-    /// the file of the answer; without it the answer is shown
+    /// the file of the answer; `None`: the answer is shown
     pub out: Option<PathBuf>,
-    /// no report of progress
+    /// whether progress is not reported
     pub quiet: bool,
 }
 
-/// The first rows of an answer, and how many there are.
+/// The first rows of an answer, and its number of rows.
 #[derive(Default)]
 struct Summary {
     batches: Vec<RecordBatch>,
@@ -76,7 +76,7 @@ struct Open {
     context: SessionContext,
     rows: Arc<RowsFunction>,
     query: Statement,
-    /// from where the statements before the query read files
+    /// the places of the files that the statements before the query read
     places: Vec<ListingTableUrl>,
 }
 
@@ -114,7 +114,7 @@ impl Open {
         Ok(plan)
     }
 
-    /// Streams the answer of a plan into a file, if there is to be one, and returns its digest.
+    /// Writes the answer of a plan to a file, if one is given, and returns its digest.
     async fn answer(
         &self,
         plan: LogicalPlan,
@@ -142,11 +142,11 @@ impl Open {
     }
 }
 
-/// Runs a sweep and shows what came out.
+/// Runs a sweep and shows its result.
 ///
 /// # Errors
 ///
-/// A wrong query, and what the engine or a file refuse.
+/// A mistake in the query, or an error of the engine or a file.
 pub async fn run(sweep: &Sweep) -> Result<(), Failure> {
     check(sweep)?;
     let open = Open::new(&sweep.setup, &sweep.sql).await?;
@@ -209,7 +209,7 @@ fn report(sweep: &Sweep, digest: Digest, rows: u64, seconds: f64) -> Result<(), 
     Ok(())
 }
 
-/// Runs the parts that are not there yet, then makes the answer of all of them.
+/// Runs the parts that are not complete yet, then computes the answer from all of them.
 async fn in_parts(
     sweep: &Sweep,
     open: &Open,
@@ -221,7 +221,7 @@ async fn in_parts(
         Some(_) => PathBuf::from(format!("{}.parts", out.display())),
         None => out.clone(),
     };
-    // wrong queries are refused before anything is written
+    // mistakes in queries are reported before anything is written
     let plan = open.plan().await?;
     if open.rows.calls.load(Ordering::Relaxed) != 1 {
         return Err(Failure::Input(
@@ -247,7 +247,7 @@ async fn in_parts(
             continue;
         }
         if skipped > told && !sweep.quiet {
-            // a report that cannot be written is no reason to stop
+            // errors of writing a report are ignored
             let _ = writeln!(std::io::stderr(), "{skipped} rows were done before");
             told = skipped;
         }

@@ -19,7 +19,7 @@ use crate::functions;
 use crate::models::{Model, shipped};
 use crate::rows::RowsFunction;
 
-/// Where a query runs.
+/// The engine of a query.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Engine {
     /// DataFusion in this process
@@ -30,12 +30,12 @@ pub enum Engine {
     Cluster(String),
 }
 
-/// What a session is made of.
+/// The configuration of a session.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// the engine
     pub engine: Engine,
-    /// threads that compute
+    /// number of threads
     pub cores: usize,
     /// bytes that sorts, groups and joins may hold before they spill to disk
     pub memory: usize,
@@ -47,7 +47,7 @@ pub struct Setup {
 ///
 /// # Errors
 ///
-/// A file that is no model, or a name that is there already.
+/// A file is not a model, or a name is already used.
 pub fn models(own: &[PathBuf]) -> Result<Vec<Arc<Model>>, Failure> {
     let mut all = shipped().to_vec();
     for path in own {
@@ -64,7 +64,7 @@ pub fn models(own: &[PathBuf]) -> Result<Vec<Arc<Model>>, Failure> {
     Ok(all)
 }
 
-/// A configuration with the codecs by which our tables and models travel.
+/// A configuration with the codecs for the tables and models of this package.
 pub fn configuration() -> SessionConfig {
     SessionConfig::new_with_ballista()
         .with_ballista_logical_extension_codec(Arc::new(Logical::default()))
@@ -99,7 +99,7 @@ pub fn state(
 /// The engine's.
 pub fn planner(config: SessionConfig, files: Arc<NamedFiles>) -> datafusion::common::Result<SessionState> {
     let mut state = state(config, 1 << 30, shipped())?;
-    // A statement in a client's text makes no table of a file of this machine.
+    // Statements of clients must not create tables of files on this machine.
     state.table_factories_mut().clear();
     let rules = ballista_default_optimizer_rules();
     Ok(SessionStateBuilder::new_from_existing(state)
@@ -113,7 +113,7 @@ impl Setup {
     ///
     /// # Errors
     ///
-    /// A model that is none, a scheduler that does not answer.
+    /// A file is not a model, or the scheduler does not answer.
     pub async fn open(&self) -> Result<(SessionContext, Arc<RowsFunction>), Failure> {
         let models = models(&self.models)?;
         let config = match self.engine {
@@ -131,7 +131,7 @@ impl Setup {
         };
         // 'file.parquet' in FROM is a table
         let context = context.enable_url_table();
-        // Ballista's client begins with its own functions
+        // Ballista's client starts with its own functions only
         for function in functions::scalar_functions(&models) {
             context.register_udf((*function).clone());
         }
@@ -144,11 +144,11 @@ impl Setup {
     }
 }
 
-/// Whether somebody listens at an address.
+/// Checks that a process listens at an address.
 ///
 /// # Errors
 ///
-/// Nobody does.
+/// No process does.
 pub async fn answers(address: &str) -> Result<(), Failure> {
     let unreachable = |why: String| {
         Failure::Engine(format!(

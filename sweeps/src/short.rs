@@ -1,5 +1,5 @@
-//! The short form of a sweep, `--model two_sleds --vary mu=0:2:100 --sample 1e9`, as SQL: the collisions of a
-//! model counted by what becomes of them, for every point of a grid.
+//! The short form of a sweep, `--model two_sleds --vary mu=0:2:100 --sample 1e9`, as SQL: the numbers of
+//! collisions of a model by their outcomes, for every point of a grid.
 
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ fn named(text: &str) -> Result<(String, &str), String> {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or(format!("`{text}` is no number"))
+    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or(format!("`{text}` is not a number"))
 }
 
 impl std::str::FromStr for Vary {
@@ -83,9 +83,9 @@ impl std::str::FromStr for Set {
 ///
 /// # Errors
 ///
-/// A text that is none.
+/// The text is not a number of rows.
 pub fn count(text: &str) -> Result<i64, String> {
-    let number: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    let number: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     if (1.0..=9e15).contains(&number) && number.fract() == 0.0 {
         Ok(number as i64)
     } else {
@@ -100,11 +100,11 @@ pub struct Short<'a> {
     pub model: &'a Model,
     /// the grid
     pub vary: &'a [Vary],
-    /// what is drawn
+    /// the random fields
     pub draw: &'a [Draw],
-    /// what is fixed
+    /// the constant fields
     pub set: &'a [Set],
-    /// how many collisions
+    /// number of collisions
     pub sample: i64,
     /// the seed
     pub seed: i64,
@@ -112,7 +112,7 @@ pub struct Short<'a> {
     pub sampler: &'a str,
 }
 
-/// The counts of a row of the answer: name, and which collisions count.
+/// The counts in a row of the answer: name, and the condition for counting.
 const COUNTS: [(&str, &str); 6] = [
     ("solved", "c['kind'] = 'ok'"),
     ("not_approaching", "c['kind'] = 'not_approaching'"),
@@ -123,11 +123,11 @@ const COUNTS: [(&str, &str); 6] = [
 ];
 
 impl Short<'_> {
-    /// The query, and the query that makes its answer of the answers for parts.
+    /// The query, and the query that combines the answers of parts.
     ///
     /// # Errors
     ///
-    /// A name that is given twice, a grid of more points than rows.
+    /// A name is given twice, or the grid has more points than rows.
     pub fn sql(&self) -> Result<(String, String), Failure> {
         let points: i64 =
             self.vary.iter().map(|vary| vary.count).try_fold(1, i64::checked_mul).unwrap_or(i64::MAX);
@@ -202,7 +202,7 @@ impl Short<'_> {
         }
     }
 
-    /// Where nothing is drawn by name: every independent speed that is not given otherwise, from -1 to 1.
+    /// The default random fields: every independent speed that is not given otherwise, from -1 to 1.
     fn free_speeds(&self) -> Result<Vec<Draw>, Failure> {
         use hodograph::{ComponentKind, Mechanism};
         let mechanism = self.model.mechanism().map_err(Failure::Input)?;

@@ -1,4 +1,4 @@
-//! What the tool says on standard output. A reader that has enough, as `head`, ends the tool in silence.
+//! Writes to standard output. If its reader closes it, as `head` does, the tool ends without a message.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -9,7 +9,7 @@ use crate::failure::Failure;
 ///
 /// # Errors
 ///
-/// [`Failure::ReaderGone`] where nobody reads any more; a full disk.
+/// [`Failure::ReaderGone`] if the reader has closed it; the disk is full.
 pub fn line(text: impl Display) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{text}").and_then(|()| out.flush()).map_err(|error| match error.kind() {

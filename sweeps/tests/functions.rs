@@ -152,7 +152,7 @@ async fn errors_are_values() {
         "not_approaching",
         "not_finite",
         "impossible_mass",
-        "unknown_contact",
+        "unknown_name",
         "ok",
     ];
     assert_eq!(kinds, wanted);
@@ -172,7 +172,10 @@ async fn wrong_fields_are_refused_by_name() {
     let setup = Setup { engine: Engine::Embedded, cores: 1, memory: 1 << 30, models: Vec::new() };
     let (context, _) = setup.open().await.unwrap();
     let cases = [
-        ("two_sleds_energy(named_struct('q9', 1.0))", "has no field `q9`; it has time, q1, q2"),
+        (
+            "two_sleds_energy(named_struct('q9', 1.0))",
+            "there is no parameter, number of the state or field `q9`: there are: time, q1, q2",
+        ),
         ("two_sleds_energy(named_struct('q3', 'north'))", "the field `q3` is"),
         ("two_sleds_energy(1.0)", "takes one struct of named fields"),
         ("two_sleds_collide(named_struct('mu', 0.5, 'e', 0.5))", "needs the field `law`"),
@@ -241,4 +244,58 @@ async fn rounding_is_no_gain_of_energy() {
         }
     }
     assert!(positive > 50 && gained > 500, "{positive} {gained}");
+}
+
+/// Bad input has the errors that every door has: those of rows by their kind, those of queries in words.
+#[tokio::test]
+async fn bad_input_has_the_errors_of_every_door() {
+    let models = vec!["../tests/data/doors/errors.mech".into()];
+    let setup = Setup { engine: Engine::Embedded, cores: 1, memory: 1 << 30, models };
+    let (context, _) = setup.open().await.unwrap();
+    let mistakes: Vec<serde_json::Value> =
+        serde_json::from_str(include_str!("../../tests/data/doors/errors.json")).unwrap();
+    let (mut rows, mut queries) = (0, 0);
+    for mistake in &mistakes {
+        if !mistake["doors"].as_array().unwrap().iter().any(|door| door == "sql") {
+            continue;
+        }
+        let mut fields = Vec::new();
+        for section in ["q", "u", "parameters"] {
+            for (name, value) in mistake[section].as_object().into_iter().flatten() {
+                let text = value.as_str().map(|text| text.replace("nan", "NaN"));
+                let value = text.map_or(value.to_string(), |text| format!("'{text}'"));
+                fields.push(format!("'{name}', {value}::double"));
+            }
+        }
+        let call = mistake["call"].as_str().unwrap();
+        for name in ["mu", "e", "tolerance"] {
+            fields.extend(mistake[name].as_f64().map(|value| format!("'{name}', {value:?}::double")));
+        }
+        fields.extend(mistake["law"].as_str().map(|law| format!("'law', '{law}'")));
+        match call {
+            "simulate" => fields.push("'until', 0.1".to_owned()),
+            "collide" => {
+                let contact = mistake["contact"].as_str().unwrap_or("floor");
+                fields.push(format!("'contact', '{contact}'"));
+            }
+            _ => {}
+        }
+        let sql = format!("SELECT errors_{call}(named_struct({}))['kind'] AS kind", fields.join(", "));
+        let found = match context.sql(&sql).await {
+            Ok(frame) => frame.collect().await,
+            Err(error) => Err(error),
+        };
+        match found {
+            Ok(batches) => {
+                assert_eq!(texts(&batches[0], 0)[0].as_deref(), mistake["kind"].as_str(), "{mistake}");
+                rows += 1;
+            }
+            Err(error) => {
+                let said = error.strip_backtrace();
+                assert!(said.contains(mistake["words"].as_str().unwrap()), "{mistake}: {said}");
+                queries += 1;
+            }
+        }
+    }
+    assert!(rows > 12 && queries > 1, "{rows} {queries}");
 }

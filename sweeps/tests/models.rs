@@ -154,6 +154,33 @@ async fn collisions_have_the_bits_of_generated_code() {
     }
 }
 
+/// The states of `tests/data/doors`: every door gives the same bits.
+#[tokio::test]
+async fn twenty_states_have_the_bits_of_every_door() {
+    let table = include_str!("../../tests/data/doors/planar_double_pendulum.csv");
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|number| number.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 20);
+    let values: Vec<String> =
+        rows.iter().map(|row| format!("({:?}, {:?}, {:?}, {:?})", row[0], row[1], row[2], row[3])).collect();
+    let state = "named_struct('q1', q1, 'q2', q2, 'u1', u1, 'u2', u2)";
+    let model = "planar_double_pendulum";
+    let found = query(&format!(
+        "SELECT {model}_accelerations({state}) AS rates, {model}_energy({state}) AS energy
+         FROM (VALUES {}) AS t(q1, q2, u1, u2)",
+        values.join(", ")
+    ))
+    .await;
+    let [rates, energy] = ["rates", "energy"].map(|name| found.column_by_name(name).unwrap().as_struct());
+    for (place, row) in rows.iter().enumerate() {
+        assert_eq!((kind(rates, place), bits(rates, place)), ("ok", bits_of(&row[4..6])));
+        assert_eq!(bits(energy, place)[..1], bits_of(&row[6..7])[..]);
+    }
+}
+
 #[tokio::test]
 async fn accelerations_and_energy_have_the_bits_of_generated_code() {
     for (model, mechanism) in generated() {

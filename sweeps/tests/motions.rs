@@ -51,6 +51,6 @@ async fn motions_have_the_bits_of_the_simulation() {
         assert_eq!(after_law[row], Some(with(Some(law)).speeds[0]));
     }
     // mu = -0.125: an answer of its own.
-    assert_eq!(kinds[0].as_deref(), Some("bad_option"));
+    assert_eq!(kinds[0].as_deref(), Some("negative_friction"));
     assert!(time[0].is_none() && collisions.is_null(0));
 }

@@ -147,7 +147,7 @@ fn mistakes_are_told_with_their_cause() {
         (&["run"], "give a query"),
         (&["run", "--model", "three_sleds", "--sample", "10"], "there is no model `three_sleds`"),
         (&["run", "--model", "none.mech", "--sample", "10"], "cannot read none.mech"),
-        (&["run", "--model", "two_sleds", "--vary", "q9=0:1:2", "--sample", "10"], "no field `q9`"),
+        (&["run", "--model", "two_sleds", "--vary", "q9=0:1:2", "--sample", "10"], "field `q9`"),
         (
             &["run", "--model", "two_sleds", "--vary", "mu=0:1:20", "--sample", "10"],
             "less than the 20 points",
@@ -208,7 +208,7 @@ fn a_contact_that_is_none_is_refused_when_planning() {
     let said = fails(home.path(), &["run", "--sql", &format!("SELECT {call} AS c FROM rows(10)")], 2);
     assert!(said.contains(wanted), "{said}");
 
-    let wanted = "chaplygin_sleigh_collide has no contact `wall`; the model has post, slanted";
+    let wanted = "chaplygin_sleigh_collide: there is no contact `wall`: there are: post, slanted";
     let said = fails(home.path(), &[&short[..], &["--set", "contact=wall"]].concat(), 2);
     assert!(said.contains(wanted), "{said}");
     let call = call.replace("'newton'", "'newton', 'contact', 'wall'");

@@ -2,8 +2,8 @@
 
 use crate::common::Model;
 use hodograph_generator::arithmetic::Function;
-use hodograph_generator::program::Quantity;
-use hodograph_generator::program::operation::{Operation, Stage};
+use hodograph_generator::program::operation::{Operation, Stage, Value};
+use hodograph_generator::program::{ContactQuantity, Quantity};
 
 /// Inverse dynamics of the Stanford arm took Kane and Levinson 646 multiplications and 394 additions (1983,
 /// by hand).
@@ -43,4 +43,26 @@ fn mass_matrix_of_the_double_pendulum() {
         )
     };
     assert_eq!(operations.iter().filter(round).count(), 1);
+}
+
+/// The gaps and validities of all 52 contacts of two boxes, in one pass and one by one: docs/theory.md, 16.10.
+#[test]
+fn gaps_of_two_boxes() {
+    let model = Model::load("../simulation/models/crate_on_table");
+    let stages = model.program.stages();
+    let near = |contact: u32| {
+        [ContactQuantity::Gap, ContactQuantity::Validity].map(|of| Quantity::Contact(contact, of))
+    };
+    let count = |quantities: &[Quantity]| {
+        let order = model.program.slice(quantities).order;
+        let computed = |value: &&Value| {
+            stages[value.index()] > Stage::Parameter
+                && !matches!(model.program.operation(**value), Operation::Input(_))
+        };
+        order.iter().filter(computed).count()
+    };
+    let together = count(&(0..52).flat_map(near).collect::<Vec<_>>());
+    let alone: usize = (0..52).map(|contact| count(&near(contact))).sum();
+    println!("{together} operations together, {alone} alone");
+    assert!(together < 2600 && alone > 15_000, "{together} together, {alone} alone");
 }

@@ -1,9 +1,9 @@
-//! Packages outside of the workspace, built by a child cargo as a user would: features are not unified with
+//! The packages of `tests/fixtures`, outside of the workspace, built by a child cargo as a user would: features are not unified with
 //! the workspace's.
 //!
 //! * `downstream`: a crate with its own models, `no_std`, the dependency renamed, every warning an error,
 //!   without the algebra engine;
-//! * `parallel`: a workspace of three crates with models, which cargo builds at the same time;
+//! * `cart`, `puck` and `robot`: three crates with models, which cargo builds at the same time;
 //! * `freestanding`: a program without operating system, libc and allocator. It links only if nothing in a
 //!   generated collision can panic.
 
@@ -11,25 +11,30 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-fn package(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+/// The crates with models that are built at the same time.
+const AT_ONCE: [&str; 6] = ["-p", "cart", "-p", "puck", "-p", "robot"];
+
+fn fixtures() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
 }
 
-fn cargo(name: &str, arguments: &[&str]) -> Output {
-    command(name, arguments).output().expect("cargo runs")
+/// Where the fixtures are built: what several of them need is built once.
+fn target() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("fixtures")
 }
 
-fn command(name: &str, arguments: &[&str]) -> Command {
+fn cargo(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("cargo runs")
+}
+
+fn command(arguments: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    // what two of them need in the same way is built once
-    let shared = if name == "parallel" { "downstream" } else { name };
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(shared);
     let mut command = Command::new(cargo);
     command
         .args(arguments)
         .args(["--offline", "--locked", "--target-dir"])
-        .arg(target)
-        .current_dir(package(name));
+        .arg(target())
+        .current_dir(fixtures());
     // What belongs to the outer build must not leak into the inner one.
     for (key, _) in std::env::vars_os() {
         let key = key.to_string_lossy().into_owned();
@@ -40,18 +45,18 @@ fn command(name: &str, arguments: &[&str]) -> Command {
     command
 }
 
-fn succeeds(name: &str, arguments: &[&str]) -> String {
-    let output = cargo(name, arguments);
+fn succeeds(arguments: &[&str]) -> String {
+    let output = cargo(arguments);
     let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "cargo {arguments:?} in tests/{name}:\n{errors}");
+    assert!(output.status.success(), "cargo {arguments:?} in tests/fixtures:\n{errors}");
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
 #[test]
 fn a_users_crate_builds_and_collides() {
-    succeeds("downstream", &["test", "--lib"]);
+    succeeds(&["test", "-p", "downstream", "--lib"]);
     // Nothing is printed on stdout by the macro, so a build's messages stay JSON.
-    let messages = succeeds("downstream", &["check", "--message-format=json"]);
+    let messages = succeeds(&["check", "-p", "downstream", "--message-format=json"]);
     for line in messages.lines() {
         assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "not JSON: {line}");
     }
@@ -60,7 +65,7 @@ fn a_users_crate_builds_and_collides() {
 
 /// The user's crate names one of the ready-made models: the compiler has read that one.
 fn one_ready_made_model_is_built() {
-    let built = Path::new(env!("CARGO_TARGET_TMPDIR")).join("downstream/debug/deps");
+    let built = target().join("debug/deps");
     let mut lists = 0;
     for entry in std::fs::read_dir(built).expect("it was built there").flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
@@ -79,21 +84,21 @@ fn one_ready_made_model_is_built() {
 /// waits for ever, nothing aborts, and standard output stays JSON.
 #[test]
 fn three_crates_with_models_build_at_once() {
-    build_at_once("parallel", &[]);
+    build_at_once(&[]);
 }
 
 /// The same with a model that the compiler derives.
 #[test]
 #[ignore = "builds the algebra engine for the compiler: some minutes"]
 fn three_crates_derive_at_once() {
-    build_at_once("parallel", &["--features", "robot/absent,robot/derive"]);
+    build_at_once(&["--features", "robot/absent,robot/derive"]);
 }
 
-fn build_at_once(name: &str, features: &[&str]) {
+fn build_at_once(features: &[&str]) {
     let commands = [&["build"][..], &["check"], &["check", "--tests"]];
     let run = |arguments: &[&str]| {
-        let mut command = command(name, arguments);
-        let output = command.args(["--workspace", "--message-format=json"]).args(features).output();
+        let mut command = command(arguments);
+        let output = command.args(AT_ONCE).arg("--message-format=json").args(features).output();
         let output = output.expect("cargo runs");
         assert!(output.status.success(), "cargo {arguments:?}:\n{}", String::from_utf8_lossy(&output.stderr));
         for line in String::from_utf8_lossy(&output.stdout).lines() {
@@ -112,8 +117,8 @@ fn build_at_once(name: &str, features: &[&str]) {
 /// and rustdoc has nothing to say of it.
 #[test]
 fn comments_of_a_model_are_no_examples() {
-    succeeds("parallel", &["test", "-p", "puck", "--doc"]);
-    let mut documented = command("parallel", &["doc", "-p", "puck", "--no-deps"]);
+    succeeds(&["test", "-p", "puck", "--doc"]);
+    let mut documented = command(&["doc", "-p", "puck", "--no-deps"]);
     let output = documented.env("RUSTDOCFLAGS", "-D warnings").output().expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
@@ -122,7 +127,7 @@ fn comments_of_a_model_are_no_examples() {
 /// own.
 #[test]
 fn an_inline_model_without_derivation_names_its_own_file() {
-    let output = cargo("parallel", &["check", "-p", "robot", "--features", "absent"]);
+    let output = cargo(&["check", "-p", "robot", "--features", "absent"]);
     assert!(!output.status.success());
     let said = String::from_utf8_lossy(&output.stderr).replace('\\', "/");
     assert!(said.contains("the model has no derivation `derived/arm.derivation`"), "{said}");
@@ -136,8 +141,8 @@ fn an_inline_model_without_derivation_names_its_own_file() {
 fn a_users_crate_needs_no_algebra_engine() {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let tree = Command::new(cargo)
-        .args(["tree", "--offline", "--locked"])
-        .current_dir(package("downstream"))
+        .args(["tree", "-p", "downstream", "--offline", "--locked"])
+        .current_dir(fixtures())
         .output()
         .unwrap();
     let tree = String::from_utf8_lossy(&tree.stdout).into_owned();
@@ -146,7 +151,7 @@ fn a_users_crate_needs_no_algebra_engine() {
 
 #[test]
 fn a_generated_collision_needs_no_system_and_cannot_panic() {
-    succeeds("freestanding", &["build", "--release"]);
+    succeeds(&["build", "-p", "freestanding", "--profile", "freestanding"]);
 }
 
 /// The inner builds are offline: what they need must be what the workspace needs.
@@ -162,13 +167,11 @@ fn locked_versions_are_those_of_the_workspace() {
         });
         pairs.collect()
     };
-    let workspace = versions(&package("../Cargo.lock"));
-    for name in ["downstream", "freestanding", "inlined", "parallel"] {
-        let other = versions(&package(name).join("Cargo.lock"));
-        let missing: Vec<_> = other.difference(&workspace).collect();
-        assert!(
-            missing.is_empty(),
-            "tests/{name}/Cargo.lock: {missing:?}; copy the workspace's Cargo.lock there and build once"
-        );
-    }
+    let workspace = versions(&fixtures().join("../../Cargo.lock"));
+    let fixtures = versions(&fixtures().join("Cargo.lock"));
+    let missing: Vec<_> = fixtures.difference(&workspace).collect();
+    assert!(
+        missing.is_empty(),
+        "tests/fixtures/Cargo.lock: {missing:?}; copy the workspace's Cargo.lock there and build once"
+    );
 }

@@ -51,6 +51,29 @@ fn the_same_bits_as_the_interpreter() {
     }
 }
 
+/// A routine in place overwrites everything with the bits of the routine of the same name; those of the slices
+/// are compared in `mechanisms_by_slices.rs`.
+#[test]
+fn in_place_the_same_bits() {
+    for (module, model) in &pairs() {
+        assert!(module.in_place().contains(&"mass_matrix"), "{}", module.name());
+        let directions = model.mechanism.independent_states() + model.mechanism.inputs.len();
+        let tangent: Vec<f64> = (0..directions).map(|i| 1.0 - 0.3 * i as f64).collect();
+        for sample in samples(model, 3) {
+            let at = &Inputs { tangent: tangent.clone(), ..sample.inputs };
+            for routine in module.in_place() {
+                let bits = |name: &str| {
+                    let answer = module.call(name, at).expect("a routine");
+                    answer.map(|numbers| numbers.into_iter().map(f64::to_bits).collect::<Vec<_>>())
+                };
+                let (by_value, in_place) = (bits(routine), bits(&format!("{routine}_into")));
+                assert!(by_value.is_ok(), "{}::{routine}: {by_value:?}", module.name());
+                assert_eq!(by_value, in_place, "{}::{routine}", module.name());
+            }
+        }
+    }
+}
+
 /// `mass_matrix_lower` has the bits of one triangle of `mass_matrix`; where that has one entry only, there is
 /// no such method.
 #[test]

@@ -1,4 +1,4 @@
-//! A specialised collision is one routine: in the machine code of `tests/inlined` it calls no function but
+//! A specialised collision is one routine: in the machine code of `tests/fixtures/inlined` it calls no function but
 //! those for cold paths, which the compiler puts into the section `.text.unlikely`.
 //!
 //! The machine code is the compiler's own listing (`rustc --emit asm`), so that no disassembler is needed:
@@ -12,7 +12,7 @@ use std::process::Command;
 /// The target of Cortex-M processors.
 const CORTEX_M: &str = "thumbv7em-none-eabihf";
 
-/// The routines that `tests/inlined` compiles specialised: model, method.
+/// The routines that `tests/fixtures/inlined` compiles specialised: model, method.
 const ROUTINES: [[&str; 2]; 12] = [
     ["two_sleds", "newton"],
     ["two_sleds", "poisson"],
@@ -109,7 +109,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The listing of `tests/inlined`, compiled by this cargo with these arguments.
+/// The listing of `tests/fixtures/inlined`, compiled by this cargo with these arguments.
 fn listing(cargo: &Path, name: &str, arguments: &[&str], flags: &str) -> Listing {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inlined").join(name);
     let mut command = Command::new(cargo);
@@ -118,7 +118,7 @@ fn listing(cargo: &Path, name: &str, arguments: &[&str], flags: &str) -> Listing
         .arg(&target)
         .args(arguments)
         .args(["--", "--emit", "asm"])
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("inlined"));
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/inlined"));
     // What belongs to the outer build must not leak into the inner one.
     for (key, _) in std::env::vars_os() {
         let key = key.to_string_lossy().into_owned();

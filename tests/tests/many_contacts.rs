@@ -151,6 +151,10 @@ fn a_pyramid_stands_where_forces_exist() {
     let start = Start::of(&pyramid);
     let end = run(&pyramid, &start, surface(0.45, 0.0), 0.2);
     assert!(end.error.is_none() && end.rests(), "{:?} {:?}", end.error, end.names());
+    // That it falls obeys the laws as well, and is said.
+    let several =
+        |event: &Event| matches!(event.kind, EventKind::Contact { selection: Selection::SeveralModes, .. });
+    assert!(end.events.iter().any(several), "{:?}", end.events);
     let end = run(&pyramid, &start, surface(0.40, 0.0), 0.05);
     assert!(end.error.is_none() && !end.rests(), "{:?} {:?}", end.error, end.names());
 }

@@ -2,7 +2,7 @@
 
 // The benchmark measures more mechanisms at more states, beside another program.
 #[allow(dead_code)]
-#[path = "../benchmark/src/precise.rs"]
+#[path = "../benchmarks/generated/src/precise.rs"]
 mod precise;
 
 use crate::common::Model;

@@ -1,6 +1,6 @@
 """A cart-pole swings up with the least effort: direct collocation, solved by IPOPT through the generated module's equations of motion and Jacobians.
 
-`python examples/swing_up.py target/release/examples/libcart_pole.so picture.png` after `cargo build --release --example cart_pole`.
+`python examples/swing_up.py ../target/release/examples/libcart_pole.so picture.png` after `cargo build --release --example cart_pole`.
 """
 
 from __future__ import annotations

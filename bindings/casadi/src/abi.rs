@@ -1,9 +1,13 @@
 //! Where numbers cross from C and to C. All that is `unsafe` here are copies between the caller's memory and
 //! one slice of the work vector that the caller lends; everything else is safe code on that slice.
 
-use std::ffi::{c_int, c_longlong};
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::ffi::{CString, c_char, c_int, c_longlong};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::{ptr, slice};
+
+use hodograph::{Cause, StateError};
 
 use crate::functions::Function;
 use crate::layout::Layout;
@@ -13,6 +17,25 @@ pub type Int = c_longlong;
 
 /// The error code of CasADi's functions.
 const FAILED: c_int = 1;
+
+thread_local! {
+    /// Why the last evaluation of this thread that failed did so.
+    static WHY: RefCell<CString> = RefCell::default();
+}
+
+/// Keeps why an evaluation fails, and answers the error code.
+fn failed(why: &str) -> c_int {
+    let why = CString::new(why).unwrap_or_default();
+    let _ = WHY.try_with(|kept| kept.replace(why));
+    FAILED
+}
+
+/// Why the last evaluation of this thread that failed did so: the name of the cause, a colon, and words. Empty where
+/// none failed. The text lasts until the next one that fails.
+#[doc(hidden)]
+pub fn last_error() -> *const c_char {
+    WHY.try_with(|kept| kept.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+}
 
 /// Writes how long the arrays of arguments, results, integers and numbers must be that [`evaluate`] is lent;
 /// nonzero where there is no such function.
@@ -54,8 +77,11 @@ pub unsafe fn evaluate<F: Function>(
     w: *mut f64,
 ) -> c_int {
     let (count, results) = layout.sizes();
-    if layout.refused.is_some() || w.is_null() || !w.is_aligned() {
-        return FAILED;
+    if let Some(reason) = &layout.refused {
+        return failed(reason);
+    }
+    if w.is_null() || !w.is_aligned() {
+        return failed("the work vector is null or not aligned");
     }
     // SAFETY: `w` may be written for `count + results` doubles and overlaps nothing else. They are set before
     // the slice over them is made, so it holds numbers; nobody else uses them until we return.
@@ -81,8 +107,11 @@ pub unsafe fn evaluate<F: Function>(
         }
     }
     // A function may not read all of its inputs: a state that is not finite has no answer nevertheless.
-    if inputs.iter().any(|number| !number.is_finite()) {
-        return FAILED;
+    if let Some((name, index, value)) = not_finite(layout, inputs) {
+        return failed(&format!(
+            "{}: {name}[{index}] is {value}: it must be finite",
+            Cause::NotFinite.name()
+        ));
     }
     // The functions do not panic; if one did, nothing would leave this one but its error code.
     let (given, wanted) = (&*inputs, AssertUnwindSafe(&mut *outputs));
@@ -90,8 +119,14 @@ pub unsafe fn evaluate<F: Function>(
         let AssertUnwindSafe(wanted) = { wanted };
         F::evaluate(given, wanted)
     });
-    if !matches!(answered, Ok(Ok(()))) || outputs.iter().any(|number| !number.is_finite()) {
-        return FAILED;
+    let error = match answered {
+        Ok(Ok(())) if outputs.iter().all(|number| number.is_finite()) => None,
+        Ok(Ok(())) => Some(StateError::NotFinite),
+        Ok(Err(error)) => Some(error),
+        Err(_) => return failed("a fault of the library: please report it"),
+    };
+    if let Some(error) = error {
+        return failed(&format!("{}: {error}", error.kind()));
     }
     let mut rest = &*outputs;
     for (index, block) in layout.outputs.iter().enumerate() {
@@ -111,11 +146,21 @@ pub unsafe fn evaluate<F: Function>(
     0
 }
 
+/// The first of the inputs that is no finite number: the block, its place there, and the number.
+fn not_finite<'a>(layout: &'a Layout, inputs: &[f64]) -> Option<(Cow<'a, str>, usize, f64)> {
+    let mut rest = inputs;
+    layout.inputs.iter().find_map(|block| {
+        let (numbers, after) = rest.split_at(block.size.min(rest.len()));
+        rest = after;
+        let place = numbers.iter().position(|number| !number.is_finite())?;
+        Some((block.name().to_string_lossy(), place, numbers[place]))
+    })
+}
+
 #[cfg(test)]
 mod tests {
+    use std::ffi::CStr;
     use std::ptr::{null, null_mut};
-
-    use hodograph::StateError;
 
     use super::*;
     use crate::layout::Layout;
@@ -168,6 +213,17 @@ mod tests {
     fn errors_panics_and_numbers_that_are_none_give_the_error_code_and_no_result() {
         for b in [-9.0, 1000.0, f64::NAN, f64::INFINITY] {
             assert_eq!(called(Some(&[1.0, 2.0]), Some(&[b]), true), (FAILED, [7.0, 7.0]));
+            // SAFETY: a text that ends with a zero, kept until the next failure of this thread.
+            let why = unsafe { CStr::from_ptr(last_error()) }.to_str().unwrap();
+            let expected = match b {
+                -9.0 => {
+                    "not_finite: a number of the state, or a result, is infinite or not a number: it must be finite"
+                }
+                1000.0 => "a fault of the library",
+                b if b.is_nan() => "not_finite: b[0] is NaN: it must be finite",
+                _ => "not_finite: b[0] is inf: it must be finite",
+            };
+            assert!(why.starts_with(expected), "{why}");
         }
     }
 

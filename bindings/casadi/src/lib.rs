@@ -19,7 +19,8 @@
 //! those of `accelerations_derivatives`, `coordinate_rates_derivatives`, `inverse_dynamics_derivatives` and
 //! `mass_matrix`: programs of their own, without steps and truncation. Where the module answers an error (a
 //! singular state, a number that is not finite), the function returns 1, which CasADi reports as a failed
-//! evaluation; optimisers such as IPOPT then shorten their step.
+//! evaluation; optimisers such as IPOPT then shorten their step. `NAME_last_error()`, a function of C without arguments, answers why
+//! the last evaluation of the calling thread that failed did so, as `singular_state: the state is singular: ..`.
 //!
 //! Parameters are those that the model states. A mechanism with closed loops has coordinates that follow
 //! others, so its rates are no function of freely chosen coordinates: CasADi refuses to load it, and stderr
@@ -37,7 +38,7 @@ mod layout;
 mod symbols;
 
 #[doc(hidden)]
-pub use abi::{Int, evaluate, work};
+pub use abi::{Int, evaluate, last_error, work};
 pub use functions::{Dynamics, Function, InverseDynamics, InverseDynamicsJacobian, Rates, RatesJacobian};
 pub use layout::{Block, Layout};
 

@@ -68,6 +68,13 @@ macro_rules! external {
                 }
             }
 
+            #[allow(unsafe_code)]
+            // SAFETY of the attribute: see the documentation of `symbols!`.
+            #[unsafe(export_name = concat!($name, "_last_error"))]
+            extern "C" fn last_error() -> *const ::std::ffi::c_char {
+                $crate::last_error()
+            }
+
             $crate::symbols!(Rates<Door>, [$name]);
             $crate::symbols!(RatesJacobian<Door>, ["jac_", $name]);
             $crate::symbols!(InverseDynamics<Door>, [$name, "_inverse_dynamics"]);

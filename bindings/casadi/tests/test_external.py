@@ -1,5 +1,7 @@
 """The generated cart-pole as external functions of CasADi: values, Jacobians, refusals, and a trajectory that IPOPT finds through them."""
 
+import ctypes
+import json
 import os
 import sys
 from pathlib import Path
@@ -13,7 +15,7 @@ FOLDER = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(FOLDER / "examples"))
 import swing_up  # noqa: E402
 
-LIBRARIES = FOLDER / "target/release/examples"
+LIBRARIES = FOLDER / "../target/release/examples"
 WHEEL = hodograph.load(FOLDER / "examples/cart_pole.mech")
 RANDOM = np.random.default_rng(17)
 STATES = [RANDOM.normal(scale=2, size=6) for _ in range(20)]
@@ -53,6 +55,30 @@ def test_values_have_the_bits_of_the_wheel_and_agree_with_the_textbook(x):
     np.testing.assert_array_equal(u_rates, WHEEL.accelerations(q, u, f))
     np.testing.assert_array_equal(flat(INVERSE(q, u, x[4:], f)), WHEEL.inverse_dynamics(x[4:], q, u, f))
     np.testing.assert_allclose(u_rates, flat(textbook(casadi.DM(q), casadi.DM(u), f[0])[1]), rtol=1e-12, atol=1e-12)
+
+
+def test_twenty_states_have_the_bits_of_every_door():
+    pendulum = casadi.external("planar_double_pendulum", library("planar_double_pendulum"))
+    table = np.loadtxt(FOLDER.parents[1] / "tests/data/doors/planar_double_pendulum.csv", delimiter=",", skiprows=1)
+    assert len(table) == 20
+    for row in table:
+        np.testing.assert_array_equal(flat(pendulum(row[:2], row[2:4])[1]), row[4:6])
+
+
+def test_bad_input_has_the_errors_of_every_door():
+    rates = casadi.external("errors", library("errors"))
+    last_error = ctypes.CDLL(library("errors")).errors_last_error
+    last_error.restype = ctypes.c_char_p
+    mistakes = [m for m in json.loads((FOLDER.parents[1] / "tests/data/doors/errors.json").read_text()) if "casadi" in m["doors"]]
+    assert len(mistakes) > 2
+    q, u = {"s": 1.0, "z": 0.5, "a": 0.0}, {"us": 1.0, "uz": -1.0, "ua": 0.5}
+    assert np.isfinite(flat(rates(list(q.values()), list(u.values()), [0]))).all()
+    for mistake in mistakes:
+        given = [[float(mistake.get(section, {}).get(name, value)) for name, value in of.items()] for section, of in (("q", q), ("u", u))]
+        with pytest.raises(RuntimeError):
+            rates(*given, [0])
+        said = last_error().decode()
+        assert said.startswith(mistake["kind"] + ": ") and mistake["words"] in said, (mistake, said)
 
 
 def flat(found):

@@ -1,5 +1,5 @@
-//! Where calls come from C. All that is `unsafe` here are slices over the caller's memory, its callback, and the boxes behind
-//! its pointers; everything else is safe code on an [`Instance`].
+//! The functions that C calls. The only `unsafe` parts are slices over the caller's memory, its callback, and
+//! the boxes behind its pointers; everything else is safe code on an [`Instance`].
 //!
 //! Names and arguments are those of `fmi3FunctionTypes.h`.
 
@@ -23,7 +23,7 @@ const ERROR: Status = 3;
 /// `fmi3LogMessageCallback`.
 pub type Log = Option<unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char)>;
 
-/// A unit, and who is told of its errors.
+/// A unit with the callback for its errors.
 pub struct Unit {
     instance: Instance,
     environment: *mut c_void,
@@ -37,7 +37,7 @@ impl Unit {
 }
 
 fn tell(environment: *mut c_void, log: Log, message: &str) {
-    // No message has a zero within, but for a name that was given so.
+    // Messages contain no zero byte, except in names that the caller gave.
     let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
     if let Some(log) = log {
         // SAFETY: the importer's own function, called as the standard says: texts end with a zero and live through the call.
@@ -45,11 +45,12 @@ fn tell(environment: *mut c_void, log: Log, message: &str) {
     }
 }
 
-/// Does safe work on a unit: the status, and the message of what failed. A panic, which is a fault of ours, ends here.
+/// Runs safe code on a unit; returns the status and reports an error. A panic, which would be a fault of this
+/// library, is caught here.
 ///
 /// # Safety
 ///
-/// `unit` is null or a pointer that [`instantiate`] gave, not freed, and not in use elsewhere.
+/// `unit` is null or a pointer from [`instantiate`], not freed, and not in use elsewhere.
 unsafe fn on(unit: *mut c_void, work: impl FnOnce(&mut Instance) -> Result<(), Refusal>) -> Status {
     // SAFETY: by the condition of this function.
     let Some(unit) = (unsafe { unit.cast::<Unit>().as_mut() }) else { return ERROR };
@@ -67,11 +68,11 @@ unsafe fn on(unit: *mut c_void, work: impl FnOnce(&mut Instance) -> Result<(), R
     }
 }
 
-/// A slice over memory of the caller, empty where the pointer is null.
+/// A slice over memory of the caller, empty if the pointer is null.
 ///
 /// # Safety
 ///
-/// `pointer` is null or to so many values, which nobody changes while the slice lives.
+/// `pointer` is null or points to this number of values, which nobody changes while the slice lives.
 unsafe fn given<'a, T>(pointer: *const T, count: usize) -> &'a [T] {
     if pointer.is_null() || count == 0 {
         return &[];
@@ -80,11 +81,11 @@ unsafe fn given<'a, T>(pointer: *const T, count: usize) -> &'a [T] {
     unsafe { slice::from_raw_parts(pointer, count) }
 }
 
-/// The same of memory that is written to.
+/// A mutable slice over memory of the caller.
 ///
 /// # Safety
 ///
-/// `pointer` is null or to so many values, which nobody else uses while the slice lives.
+/// `pointer` is null or points to this number of values, which nobody else uses while the slice lives.
 unsafe fn wanted<'a, T>(pointer: *mut T, count: usize) -> &'a mut [T] {
     if pointer.is_null() || count == 0 {
         return &mut [];
@@ -93,11 +94,12 @@ unsafe fn wanted<'a, T>(pointer: *mut T, count: usize) -> &'a mut [T] {
     unsafe { slice::from_raw_parts_mut(pointer, count) }
 }
 
-/// Makes a unit; null where the token is of another one, or the motion cannot begin in the state of the model.
+/// Creates a unit; null if the token belongs to another unit, or the motion cannot start in the state of the
+/// model.
 ///
 /// # Safety
 ///
-/// `token` is null or a text that ends with a zero; `log` is null or the importer's function.
+/// `token` is null or a text that ends with a zero byte; `log` is null or the importer's function.
 pub unsafe fn instantiate(
     make: fn() -> Box<dyn Contacts<f64>>,
     defaults: Defaults,
@@ -127,11 +129,12 @@ pub unsafe fn instantiate(
     }
 }
 
-/// What is not offered: says so.
+/// Reports that a function is not offered.
 ///
 /// # Safety
 ///
-/// As every call on a unit: it is null, or one that [`instantiate`] gave, not freed, and not in use elsewhere.
+/// As for every call on a unit: `unit` is null or a pointer from [`instantiate`], not freed, and not in use
+/// elsewhere.
 pub unsafe fn not_offered(unit: *mut c_void, name: &str) -> Status {
     // SAFETY: by the condition of this function.
     unsafe { on(unit, |_| Err(Refusal(format!("{name} is not offered by this unit")))) }
@@ -147,7 +150,7 @@ pub unsafe fn fmi3SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> Status {
-    // Only errors are told, and they are told always.
+    // Errors are always reported, and nothing else is.
     // SAFETY: the importer's unit.
     unsafe { on(unit, |_| Ok(())) }
 }
@@ -167,12 +170,13 @@ pub unsafe fn fmi3EnterInitializationMode(
     _has_stop: bool,
     _stop: f64,
 ) -> Status {
-    // The tolerance is a parameter of the unit: an importer's own, often 1e-4, would change results without being asked.
+    // The tolerance of the importer, often 1e-4, is ignored, since it would silently change results: the
+    // tolerance of the unit is one of its parameters.
     // SAFETY: the importer's unit.
     unsafe { on(unit, |instance| instance.enter_initialization(start)) }
 }
 
-/// Calls without arguments.
+/// Functions without arguments.
 macro_rules! plain {
     ($($name:ident => $method:ident;)*) => {
         $(pub unsafe fn $name(unit: *mut c_void) -> Status {
@@ -200,7 +204,7 @@ pub unsafe fn fmi3Reset(unit: *mut c_void) -> Status {
 }
 
 pub unsafe fn fmi3EvaluateDiscreteStates(unit: *mut c_void) -> Status {
-    // Outputs follow from the state at once.
+    // Outputs are computed from the state when they are read.
     // SAFETY: the importer's unit.
     unsafe { on(unit, |_| Ok(())) }
 }
@@ -395,7 +399,7 @@ pub unsafe fn fmi3GetDirectionalDerivative(
     unsafe { on(unit, work) }
 }
 
-/// A saved state: bytes.
+/// A saved state as bytes.
 type Image = Vec<u8>;
 
 pub unsafe fn fmi3GetFMUState(unit: *mut c_void, state: *mut *mut c_void) -> Status {

@@ -1,28 +1,29 @@
-//! Directional derivatives of what follows from a state, while the modes of the contacts last.
+//! Directional derivatives of the variables of a unit, in constant modes of the contacts.
 //!
-//! By central differences over a step and half of it, extrapolated (Richardson): the error is of the fourth order in the
-//! step, which is a thousandth of the size of what changes.
+//! Central differences over a step and half of it, extrapolated (Richardson): the error is of fourth order in
+//! the step, which is a thousandth of the size of the variable.
 
-use crate::layout::What;
+use crate::layout::VariableKind;
 use crate::running::Running;
 use crate::settings::Now;
 use crate::values::Values;
 
-/// The step, relative to the size of what changes or 1.
+/// The step, relative to the size of the variable or 1.
 const STEP: f64 = 1e-3;
 
 /// The derivatives of `unknowns` along a direction that changes each of `knowns` by its seed.
 ///
 /// # Errors
 ///
-/// A sentence: a variable is none that can be an unknown or a known, or the mechanism cannot be evaluated beside the state.
+/// A sentence: a variable cannot be an unknown or a known, or the mechanism cannot be evaluated near the
+/// state.
 pub fn directional(
     running: &Running,
     now: &Now,
-    unknowns: &[What],
-    knowns: &[(What, f64)],
+    unknowns: &[VariableKind],
+    knowns: &[(VariableKind, f64)],
 ) -> Result<Vec<f64>, String> {
-    // The direction in units of the sizes of what changes.
+    // The direction in units of the sizes of the variables.
     let mut longest = 0.0_f64;
     for &(known, seed) in knowns {
         let size = known_of(&mut now.clone(), known)?.abs().max(1.0);
@@ -48,13 +49,13 @@ pub fn directional(
     Ok(whole.iter().zip(&half).map(|(whole, half)| half + (half - whole) / 3.0).collect())
 }
 
-/// The number that a known is.
-fn known_of(now: &mut Now, known: What) -> Result<&mut f64, String> {
+/// The number of a known.
+fn known_of(now: &mut Now, known: VariableKind) -> Result<&mut f64, String> {
     let found = match known {
-        What::Time => Some(&mut now.time),
-        What::Input(index) => now.inputs.get_mut(index),
-        What::Coordinate(index) => now.coordinates.get_mut(index),
-        What::Speed(index) => now.speeds.get_mut(index),
+        VariableKind::Time => Some(&mut now.time),
+        VariableKind::Input(index) => now.inputs.get_mut(index),
+        VariableKind::Coordinate(index) => now.coordinates.get_mut(index),
+        VariableKind::Speed(index) => now.speeds.get_mut(index),
         _ => None,
     };
     found.ok_or_else(|| "a known must be the time, an input or a state".to_owned())

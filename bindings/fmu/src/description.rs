@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use hodograph::{ComponentKind, Contacts, Law};
 
-use crate::layout::{Defaults, Layout, TOLERANCE, What};
+use crate::layout::{Defaults, Layout, TOLERANCE, VariableKind};
 
-/// Text for an attribute or element of XML.
+/// Text with the special characters of XML escaped.
 pub fn escaped(text: &str) -> String {
     let mut out = String::new();
     for letter in text.chars() {
@@ -15,7 +15,7 @@ pub fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // XML knows no other control characters.
+            // XML allows no other control characters.
             '\n' | '\t' => out.push(' '),
             letter if letter.is_control() => {}
             letter => out.push(letter),
@@ -24,12 +24,12 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// The text of `modelDescription.xml`. `identifier` is the name of the shared library without its extension, `token` what the
-/// unit is asked for by, `docs` a sentence about the model.
+/// The text of `modelDescription.xml`. `identifier` is the name of the shared library without its extension,
+/// `token` the instantiation token, `docs` a sentence about the model.
 ///
 /// # Errors
 ///
-/// As [`Layout::of`].
+/// Those of [`Layout::of`].
 pub fn description(
     mechanism: &dyn Contacts<f64>,
     defaults: &Defaults,
@@ -81,7 +81,7 @@ pub fn description(
     Ok(out)
 }
 
-/// Whether a unit is written.
+/// Whether the description states a unit.
 fn has_unit(unit: &str) -> bool {
     !unit.is_empty() && unit != "1"
 }
@@ -126,18 +126,18 @@ fn variable(
             number(value)
         )
     };
-    let rate = |of: What| {
+    let rate = |of: VariableKind| {
         let of = layout.reference(of).unwrap_or(0);
         format!(" causality=\"local\" variability=\"continuous\" initial=\"calculated\" derivative=\"{of}\"")
     };
-    let (element, attributes) = match of.what {
-        What::Time => ("Float64", " causality=\"independent\" variability=\"continuous\"".to_owned()),
-        What::Tolerance => ("Float64", fixed(TOLERANCE)),
-        What::MaxStep => ("Float64", fixed(defaults.max_step)),
-        What::Parameter(index) => ("Float64", fixed(parameters[index])),
-        What::Mu(contact) => ("Float64", fixed(surface(contact).map_or(0.0, |own| own.mu))),
-        What::Restitution(contact) => ("Float64", fixed(surface(contact).map_or(0.0, |own| own.e))),
-        What::Law(contact) => {
+    let (element, attributes) = match of.kind {
+        VariableKind::Time => ("Float64", " causality=\"independent\" variability=\"continuous\"".to_owned()),
+        VariableKind::Tolerance => ("Float64", fixed(TOLERANCE)),
+        VariableKind::MaxStep => ("Float64", fixed(defaults.max_step)),
+        VariableKind::Parameter(index) => ("Float64", fixed(parameters[index])),
+        VariableKind::Mu(contact) => ("Float64", fixed(surface(contact).map_or(0.0, |own| own.mu))),
+        VariableKind::Restitution(contact) => ("Float64", fixed(surface(contact).map_or(0.0, |own| own.e))),
+        VariableKind::Law(contact) => {
             let law = surface(contact).and_then(|own| Law::ALL.iter().position(|law| *law == own.law));
             let start = law.unwrap_or(0) + 1;
             (
@@ -147,32 +147,32 @@ fn variable(
                 ),
             )
         }
-        What::Input(index) => (
+        VariableKind::Input(index) => (
             "Float64",
             format!(" causality=\"input\" variability=\"continuous\" start=\"{}\"", number(inputs[index])),
         ),
-        What::Coordinate(index) => {
+        VariableKind::Coordinate(index) => {
             let initial = if is_dependent(mechanism, index) { "approx" } else { "exact" };
             ("Float64", state(coordinates[index], initial))
         }
-        What::Speed(index) => ("Float64", state(speeds[index], "exact")),
-        What::CoordinateRate(index) => ("Float64", rate(What::Coordinate(index))),
-        What::SpeedRate(index) => ("Float64", rate(What::Speed(index))),
-        What::DependentSpeed(_)
-        | What::Position(..)
-        | What::Gap(_)
-        | What::Force(..)
-        | What::KineticEnergy
-        | What::PotentialEnergy => ("Float64", computed),
-        What::Phase(_) => (
+        VariableKind::Speed(index) => ("Float64", state(speeds[index], "exact")),
+        VariableKind::CoordinateRate(index) => ("Float64", rate(VariableKind::Coordinate(index))),
+        VariableKind::SpeedRate(index) => ("Float64", rate(VariableKind::Speed(index))),
+        VariableKind::DependentSpeed(_)
+        | VariableKind::Position(..)
+        | VariableKind::Gap(_)
+        | VariableKind::Force(..)
+        | VariableKind::KineticEnergy
+        | VariableKind::PotentialEnergy => ("Float64", computed),
+        VariableKind::Phase(_) => (
             "Enumeration",
             " declaredType=\"Phase\" causality=\"output\" variability=\"discrete\" initial=\"calculated\""
                 .to_owned(),
         ),
-        What::Events => {
+        VariableKind::Events => {
             ("Int64", " causality=\"output\" variability=\"discrete\" initial=\"calculated\"".to_owned())
         }
-        What::Indicator(_) => {
+        VariableKind::Indicator(_) => {
             ("Float64", " causality=\"local\" variability=\"continuous\" initial=\"calculated\"".to_owned())
         }
     };
@@ -189,39 +189,40 @@ fn variable(
     );
 }
 
-/// A double as XML Schema spells it, so that it is read back to the bit.
+/// A double in the notation of XML Schema, which reads back as the same double.
 fn number(value: f64) -> String {
     if value == f64::INFINITY { "INF".to_owned() } else { format!("{value:?}") }
 }
 
-/// Whether a coordinate follows from the others.
+/// Whether a coordinate is dependent.
 fn is_dependent(mechanism: &dyn Contacts<f64>, index: usize) -> bool {
     let count = mechanism.count(ComponentKind::DependentCoordinate);
     (0..count).any(|place| mechanism.dependent_coordinate(place) == Some(index))
 }
 
-/// Outputs, derivatives, unknowns of the initialization, and indicators.
+/// The model structure: outputs, derivatives, unknowns of the initialization, and event indicators.
 fn structure(layout: &Layout, mechanism: &dyn Contacts<f64>, out: &mut String) {
-    let is_computed = |what: What| {
+    let is_computed = |what: VariableKind| {
         matches!(
             what,
-            What::DependentSpeed(_)
-                | What::Position(..)
-                | What::Gap(_)
-                | What::Force(..)
-                | What::Phase(_)
-                | What::KineticEnergy
-                | What::PotentialEnergy
-                | What::Events
+            VariableKind::DependentSpeed(_)
+                | VariableKind::Position(..)
+                | VariableKind::Gap(_)
+                | VariableKind::Force(..)
+                | VariableKind::Phase(_)
+                | VariableKind::KineticEnergy
+                | VariableKind::PotentialEnergy
+                | VariableKind::Events
         )
     };
-    let is_state = |what: What| matches!(what, What::Coordinate(_) | What::Speed(_));
-    let is_rate = |what: What| matches!(what, What::CoordinateRate(_) | What::SpeedRate(_));
-    let is_guess = |what: What| matches!(what, What::Coordinate(index) if is_dependent(mechanism, index));
+    let is_state = |what: VariableKind| matches!(what, VariableKind::Coordinate(_) | VariableKind::Speed(_));
+    let is_rate =
+        |what: VariableKind| matches!(what, VariableKind::CoordinateRate(_) | VariableKind::SpeedRate(_));
+    let is_guess = |what: VariableKind| matches!(what, VariableKind::Coordinate(index) if is_dependent(mechanism, index));
     out.push_str("  <ModelStructure>\n");
-    let mut list = |element: &str, wanted: &dyn Fn(What) -> bool| {
+    let mut list = |element: &str, wanted: &dyn Fn(VariableKind) -> bool| {
         for (reference, variable) in layout.variables.iter().enumerate() {
-            if wanted(variable.what) {
+            if wanted(variable.kind) {
                 let _ = writeln!(out, "    <{element} valueReference=\"{reference}\"/>");
             }
         }
@@ -229,6 +230,6 @@ fn structure(layout: &Layout, mechanism: &dyn Contacts<f64>, out: &mut String) {
     list("Output", &|what| is_computed(what) || is_state(what));
     list("ContinuousStateDerivative", &is_rate);
     list("InitialUnknown", &|what| is_computed(what) || is_rate(what) || is_guess(what));
-    list("EventIndicator", &|what| matches!(what, What::Indicator(_)));
+    list("EventIndicator", &|what| matches!(what, VariableKind::Indicator(_)));
     out.push_str("  </ModelStructure>\n");
 }

@@ -1,4 +1,4 @@
-//! A unit as bytes: its states are saved and serialised so.
+//! Converts a unit to bytes and back, to save and serialise its state.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::instance::{Instance, Kind, Mode, Refusal, refused};
 use crate::settings::{Now, Settings};
 
-/// A unit as bytes.
+/// The content of a saved state.
 #[derive(Serialize, Deserialize)]
 struct Image {
     kind: Kind,
@@ -20,11 +20,11 @@ struct Image {
 }
 
 impl Instance {
-    /// Everything that its future depends on, as bytes.
+    /// Everything on which the future of the unit depends, as bytes.
     ///
     /// # Errors
     ///
-    /// There is no memory.
+    /// There is not enough memory.
     pub fn image(&self) -> Result<Vec<u8>, Refusal> {
         let image = Image {
             kind: self.kind,
@@ -37,13 +37,13 @@ impl Instance {
         postcard::to_allocvec(&image).map_err(|error| Refusal(error.to_string()))
     }
 
-    /// Takes an image of the same unit back.
+    /// Restores a state of the same unit.
     ///
     /// # Errors
     ///
-    /// The bytes are no image of this unit; it stays as it was then.
+    /// The bytes are not a state of this unit; the unit is then unchanged.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
-        const OTHER: &str = "these bytes are no state of this unit";
+        const OTHER: &str = "these bytes are not a state of this unit";
         let image: Image = postcard::from_bytes(bytes).map_err(|_| Refusal(OTHER.to_owned()))?;
         let sizes = |now: &Now| (now.coordinates.len(), now.speeds.len(), now.inputs.len());
         let contacts = |settings: &Settings| -> Vec<usize> {

@@ -1,18 +1,19 @@
-//! A unit that was instantiated: its values, the states of its life, and its motion.
+//! An instantiated unit: its values, its mode, and its motion.
 
 use std::sync::Arc;
 
-use hodograph::{Contacts, Law, Surface};
+use hodograph::{Contacts, Law, StateError, Surface};
 use hodograph_simulation::{Options, Progress, Simulation};
 use serde::{Deserialize, Serialize};
 
 use crate::derivative::directional;
-use crate::layout::{Defaults, Layout, What, close_loops};
+use crate::layout::{Defaults, Layout, VariableKind, close_loops};
 use crate::running::Running;
 use crate::settings::{Now, Settings};
 use crate::values::Values;
+use crate::words::{Told, not_finite};
 
-/// How a unit is used.
+/// The kind of use of a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// the importer integrates
@@ -21,7 +22,7 @@ pub enum Kind {
     CoSimulation,
 }
 
-/// Where a unit is in its life.
+/// The state of a unit in the state machine of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     Instantiated,
@@ -32,7 +33,7 @@ pub enum Mode {
     Terminated,
 }
 
-/// Why a call is refused or fails, in a sentence.
+/// The reason why a call is refused or fails, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal(pub String);
 
@@ -46,27 +47,28 @@ pub fn refused<R>(message: impl Into<String>) -> Result<R, Refusal> {
     Err(Refusal(message.into()))
 }
 
-/// What [`Instance::update_discrete_states`] tells.
+/// The results of [`Instance::update_discrete_states`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Updated {
     /// the motion has ended
     pub terminates: bool,
-    /// states are not what they were
+    /// whether states have changed
     pub states_changed: bool,
-    /// when something happens next that no indicator tells
+    /// the time of the next event that no indicator announces
     pub next_time: Option<f64>,
 }
 
-/// Bounces of model exchange that are lower than this, m, are the last: importers do not find lower ones.
-const LOWEST_BOUNCE: f64 = 1e-9;
-/// A communication point may be off by this part of the time.
+/// In model exchange, bounces that are lower than this, m, are the last ones, since importers do not detect
+/// lower ones.
+const MIN_BOUNCE: f64 = 1e-9;
+/// The time of a communication point may deviate by this part.
 const SAME_TIME: f64 = 1e-9;
 
 /// A unit.
 pub struct Instance {
     pub(crate) layout: Arc<Layout>,
     pub(crate) defaults: Defaults,
-    /// makes the mechanism with the parameters of the model
+    /// creates the mechanism with the parameters of the model
     pub(crate) make: fn() -> Box<dyn Contacts<f64>>,
     pub(crate) kind: Kind,
     pub(crate) mode: Mode,
@@ -77,11 +79,11 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// A unit as the standard's instantiation leaves it.
+    /// A unit after instantiation.
     ///
     /// # Errors
     ///
-    /// As [`Layout::of`].
+    /// Those of [`Layout::of`].
     pub fn new(
         make: fn() -> Box<dyn Contacts<f64>>,
         defaults: Defaults,
@@ -108,12 +110,12 @@ impl Instance {
         &self.layout
     }
 
-    /// How it is used.
+    /// The kind of use.
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// The motion; begins it, during the initialization, from what was set so far.
+    /// The motion; during the initialization it is started from the values set so far.
     pub(crate) fn running(&mut self) -> Result<&mut Running, Refusal> {
         if self.running.is_none() {
             self.begin()?;
@@ -127,23 +129,16 @@ impl Instance {
     fn begin(&mut self) -> Result<(), Refusal> {
         let Settings { tolerance, max_step, parameters, surfaces, start } = &self.settings;
         let mut mechanism = (self.make)();
-        mechanism.set_parameter_values(parameters).map_err(|error| error.to_string())?;
+        mechanism.set_parameter_values(parameters).map_err(|error| error.told())?;
         let mut now = start.clone();
         let (time, inputs) = (now.time, now.inputs.clone());
         let speeds = now.speeds.clone();
         close_loops(&*mechanism, time, &mut now.coordinates, &speeds, &inputs)?;
         let mut given = Vec::new();
         for &(contact, mu, e, law) in surfaces {
-            let law = usize::try_from(law - 1).ok().and_then(|place| Law::ALL.get(place));
-            let Some(&law) = law else {
-                return refused(format!(
-                    "there is no law of restitution with this number: {}",
-                    Law::NAMES.join(", ")
-                ));
-            };
-            given.push((contact, Surface { mu, e, law }));
+            given.push((contact, Surface { mu, e, law: law_of(law)? }));
         }
-        let lowest = if self.kind == Kind::ModelExchange { LOWEST_BOUNCE } else { 0.0 };
+        let lowest = if self.kind == Kind::ModelExchange { MIN_BOUNCE } else { 0.0 };
         let options = Options {
             relative_tolerance: *tolerance,
             absolute_tolerance: tolerance.max(lowest),
@@ -152,15 +147,15 @@ impl Instance {
             ..Options::default()
         };
         let running =
-            Running::begin(Arc::from(mechanism), &now.state(), options).map_err(|error| error.to_string())?;
+            Running::begin(Arc::from(mechanism), &now.state(), options).map_err(|error| error.told())?;
         self.events = 0;
         self.now = now;
         self.running = Some(running);
-        // What happens at the start itself.
+        // Handle the events at the start.
         self.advance(self.now.time)
     }
 
-    /// Follows the motion to a time, and takes the state there.
+    /// Advances the motion to a time and copies its state.
     fn advance(&mut self, until: f64) -> Result<(), Refusal> {
         let (now, events) = (&mut self.now, &mut self.events);
         let Some(running) = &mut self.running else { return refused("there is no motion") };
@@ -168,7 +163,7 @@ impl Instance {
             loop {
                 let progress = simulation.advance_exactly(until);
                 take(now, simulation);
-                match progress.map_err(|error| error.to_string())? {
+                match progress.map_err(|error| error.told())? {
                     Progress::Event(_) => *events += 1,
                     Progress::Reached => return Ok(()),
                 }
@@ -176,20 +171,20 @@ impl Instance {
         })
     }
 
-    /// A number of floating point.
+    /// Reads variables of type `Float64`.
     ///
     /// # Errors
     ///
-    /// The value reference is none of such a variable, or its value cannot be computed.
+    /// A value reference does not denote such a variable, or its value cannot be computed.
     pub fn floats(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Refusal> {
         let layout = Arc::clone(&self.layout);
-        let whats = layout.whats(references, values.len())?;
-        for (what, value) in whats.iter().zip(&mut *values) {
+        let kinds = layout.kinds(references, values.len())?;
+        for (what, value) in kinds.iter().zip(&mut *values) {
             if let Some(number) = self.setting(*what) {
                 *value = number;
             }
         }
-        if whats.iter().all(|what| self.setting(*what).is_some()) {
+        if kinds.iter().all(|what| self.setting(*what).is_some()) {
             return Ok(());
         }
         if self.mode == Mode::Instantiated {
@@ -198,7 +193,7 @@ impl Instance {
         self.running()?;
         let Some(running) = &self.running else { return refused("there is no motion") };
         let mut found = Values::new(running, &self.now);
-        for (what, value) in whats.iter().zip(values) {
+        for (what, value) in kinds.iter().zip(values) {
             if self.setting(*what).is_none() {
                 *value = found.number(*what)?;
             }
@@ -206,78 +201,78 @@ impl Instance {
         Ok(())
     }
 
-    /// A number that follows from nothing else.
-    fn setting(&self, what: What) -> Option<f64> {
+    /// The value of a variable that is not computed.
+    fn setting(&self, what: VariableKind) -> Option<f64> {
         let settings = &self.settings;
         let surface = |contact| settings.surfaces.iter().find(|(index, ..)| *index == contact);
         match what {
-            What::Tolerance => Some(settings.tolerance),
-            What::MaxStep => Some(settings.max_step),
-            What::Parameter(index) => settings.parameters.get(index).copied(),
-            What::Mu(contact) => surface(contact).map(|surface| surface.1),
-            What::Restitution(contact) => surface(contact).map(|surface| surface.2),
+            VariableKind::Tolerance => Some(settings.tolerance),
+            VariableKind::MaxStep => Some(settings.max_step),
+            VariableKind::Parameter(index) => settings.parameters.get(index).copied(),
+            VariableKind::Mu(contact) => surface(contact).map(|surface| surface.1),
+            VariableKind::Restitution(contact) => surface(contact).map(|surface| surface.2),
             _ if self.running.is_some() => None,
-            What::Time => Some(settings.start.time),
-            What::Coordinate(index) if self.mode == Mode::Instantiated => {
+            VariableKind::Time => Some(settings.start.time),
+            VariableKind::Coordinate(index) if self.mode == Mode::Instantiated => {
                 settings.start.coordinates.get(index).copied()
             }
-            What::Speed(index) if self.mode == Mode::Instantiated => {
+            VariableKind::Speed(index) if self.mode == Mode::Instantiated => {
                 settings.start.speeds.get(index).copied()
             }
-            What::Input(index) => settings.start.inputs.get(index).copied(),
+            VariableKind::Input(index) => settings.start.inputs.get(index).copied(),
             _ => None,
         }
     }
 
-    /// Whole numbers: laws, phases, the count of events.
+    /// Reads integers: laws, phases, the number of events.
     ///
     /// # Errors
     ///
-    /// As [`Instance::floats`].
+    /// Those of [`Instance::floats`].
     pub fn integers(&mut self, references: &[u32], values: &mut [i64]) -> Result<(), Refusal> {
         let layout = Arc::clone(&self.layout);
-        for (what, value) in layout.whats(references, values.len())?.into_iter().zip(values) {
+        for (what, value) in layout.kinds(references, values.len())?.into_iter().zip(values) {
             *value = match what {
-                What::Law(contact) => {
+                VariableKind::Law(contact) => {
                     let found = self.settings.surfaces.iter().find(|(index, ..)| *index == contact);
                     found.map_or(0, |surface| surface.3)
                 }
-                What::Events if self.mode != Mode::Instantiated => {
+                VariableKind::Events if self.mode != Mode::Instantiated => {
                     self.running()?;
                     i64::try_from(self.events).unwrap_or(i64::MAX)
                 }
-                What::Phase(contact) if self.mode != Mode::Instantiated => {
+                VariableKind::Phase(contact) if self.mode != Mode::Instantiated => {
                     self.running()?;
                     let Some(running) = &self.running else { return refused("there is no motion") };
                     Values::new(running, &self.now).phase(contact)
                 }
-                _ => return refused("the variable is no whole number that is known by now"),
+                _ => return refused("the variable is not an integer, or not known yet"),
             };
         }
         Ok(())
     }
 
-    /// Sets numbers of floating point: parameters and start values before the end of the initialization, inputs and, in model
-    /// exchange, states later.
+    /// Sets variables of type `Float64`: parameters and start values before the end of the initialization,
+    /// later inputs and, in model exchange, states.
     ///
     /// # Errors
     ///
     /// The variable cannot be set now, or the number is not finite.
     pub fn set_floats(&mut self, references: &[u32], values: &[f64]) -> Result<(), Refusal> {
         let layout = Arc::clone(&self.layout);
-        let whats = layout.whats(references, values.len())?;
+        let kinds = layout.kinds(references, values.len())?;
         let before = matches!(self.mode, Mode::Instantiated | Mode::Initialization);
-        for ((&what, &value), &reference) in whats.iter().zip(values).zip(references) {
+        for ((&what, &value), &reference) in kinds.iter().zip(values).zip(references) {
             let name = layout.get(reference).map_or("?", |variable| &variable.name);
-            let unbounded = what == What::MaxStep && value == f64::INFINITY;
+            let unbounded = what == VariableKind::MaxStep && value == f64::INFINITY;
             if !(value.is_finite() || unbounded) {
-                return refused(format!("{name} is {value}: it must be finite"));
+                return refused(not_finite(name, value));
             }
             let exchanged =
                 self.kind == Kind::ModelExchange && matches!(self.mode, Mode::Event | Mode::ContinuousTime);
             let later = match what {
-                What::Input(_) => self.mode != Mode::Terminated,
-                What::Coordinate(_) | What::Speed(_) => exchanged,
+                VariableKind::Input(_) => self.mode != Mode::Terminated,
+                VariableKind::Coordinate(_) | VariableKind::Speed(_) => exchanged,
                 _ => false,
             };
             if !before && !later {
@@ -288,45 +283,43 @@ impl Instance {
                 surfaces.iter().position(|(index, ..)| *index == contact)
             };
             let place = match what {
-                What::Tolerance => Some(&mut self.settings.tolerance),
-                What::MaxStep => Some(&mut self.settings.max_step),
-                What::Parameter(index) => self.settings.parameters.get_mut(index),
-                What::Mu(contact) => surface(&mut self.settings.surfaces, contact)
+                VariableKind::Tolerance => Some(&mut self.settings.tolerance),
+                VariableKind::MaxStep => Some(&mut self.settings.max_step),
+                VariableKind::Parameter(index) => self.settings.parameters.get_mut(index),
+                VariableKind::Mu(contact) => surface(&mut self.settings.surfaces, contact)
                     .map(|place| &mut self.settings.surfaces[place].1),
-                What::Restitution(contact) => surface(&mut self.settings.surfaces, contact)
+                VariableKind::Restitution(contact) => surface(&mut self.settings.surfaces, contact)
                     .map(|place| &mut self.settings.surfaces[place].2),
-                What::Input(index) => target.inputs.get_mut(index),
-                What::Coordinate(index) => target.coordinates.get_mut(index),
-                What::Speed(index) => target.speeds.get_mut(index),
+                VariableKind::Input(index) => target.inputs.get_mut(index),
+                VariableKind::Coordinate(index) => target.coordinates.get_mut(index),
+                VariableKind::Speed(index) => target.speeds.get_mut(index),
                 _ => None,
             };
             let Some(place) = place else { return refused(format!("{name} is computed: it cannot be set")) };
             *place = value;
             if before {
-                // The motion has to begin anew.
+                // the motion must be started again
                 self.running = None;
             }
         }
         Ok(())
     }
 
-    /// Sets whole numbers: laws of restitution.
+    /// Sets integers: laws of restitution.
     ///
     /// # Errors
     ///
-    /// The variable is none, or it is too late.
+    /// The variable cannot be set, or not any more.
     pub fn set_integers(&mut self, references: &[u32], values: &[i64]) -> Result<(), Refusal> {
         let layout = Arc::clone(&self.layout);
-        for (what, &value) in layout.whats(references, values.len())?.into_iter().zip(values) {
-            let What::Law(contact) = what else {
+        for (what, &value) in layout.kinds(references, values.len())?.into_iter().zip(values) {
+            let VariableKind::Law(contact) = what else {
                 return refused("of whole numbers only the laws of restitution can be set");
             };
             if !matches!(self.mode, Mode::Instantiated | Mode::Initialization) {
                 return refused("the law of restitution cannot be set any more");
             }
-            if usize::try_from(value).is_err() || value < 1 || value as usize > Law::ALL.len() {
-                return refused(format!("the law is {value}: it must be from 1 to {}", Law::ALL.len()));
-            }
+            law_of(value)?;
             for surface in self.settings.surfaces.iter_mut().filter(|(index, ..)| *index == contact) {
                 surface.3 = value;
             }
@@ -335,15 +328,15 @@ impl Instance {
         Ok(())
     }
 
-    /// The initialization begins at a time, s.
+    /// Enters the initialization at a start time, s.
     ///
     /// # Errors
     ///
-    /// It is not the time for it.
+    /// The call is not allowed now.
     pub fn enter_initialization(&mut self, start: f64) -> Result<(), Refusal> {
         self.expect(&[Mode::Instantiated])?;
         if !start.is_finite() {
-            return refused(format!("the start time is {start}: it must be finite"));
+            return refused(not_finite("the start time", start));
         }
         self.settings.start.time = start;
         self.now.time = start;
@@ -351,11 +344,11 @@ impl Instance {
         Ok(())
     }
 
-    /// The initialization ends, and the motion begins.
+    /// Ends the initialization and starts the motion.
     ///
     /// # Errors
     ///
-    /// The motion cannot begin with these parameters and in this state.
+    /// The motion cannot start with these parameters in this state.
     pub fn exit_initialization(&mut self) -> Result<(), Refusal> {
         self.expect(&[Mode::Initialization])?;
         self.running()?;
@@ -363,33 +356,33 @@ impl Instance {
         Ok(())
     }
 
-    /// Model exchange: events are about to be handled.
+    /// Model exchange: enters event mode.
     ///
     /// # Errors
     ///
-    /// It is not the time for it.
+    /// The call is not allowed now.
     pub fn enter_event_mode(&mut self) -> Result<(), Refusal> {
         self.expect(&[Mode::ContinuousTime])?;
         self.mode = Mode::Event;
         Ok(())
     }
 
-    /// Model exchange: the integration goes on.
+    /// Model exchange: enters continuous-time mode.
     ///
     /// # Errors
     ///
-    /// It is not the time for it.
+    /// The call is not allowed now.
     pub fn enter_continuous_time(&mut self) -> Result<(), Refusal> {
         self.expect(&[Mode::Event])?;
         self.mode = Mode::ContinuousTime;
         Ok(())
     }
 
-    /// Model exchange: what happens in this state happens.
+    /// Model exchange: handles the events in the present state.
     ///
     /// # Errors
     ///
-    /// It is not the time for it, or the motion cannot go on.
+    /// The call is not allowed now, or the motion cannot continue.
     pub fn update_discrete_states(&mut self) -> Result<Updated, Refusal> {
         self.expect(&[Mode::Event])?;
         let (now, events) = (&mut self.now, &mut self.events);
@@ -397,7 +390,7 @@ impl Instance {
         let before = now.clone();
         running.with(|simulation| {
             let happened =
-                simulation.continue_from(&before.state()).map_err(|error| Refusal(error.to_string()))?;
+                simulation.continue_from(&before.state()).map_err(|error| Refusal(error.told()))?;
             *events += happened.len() as u64;
             take(now, simulation);
             let states_changed = before != *now;
@@ -409,35 +402,33 @@ impl Instance {
         })
     }
 
-    /// Model exchange: the integration has come to the present state.
+    /// Model exchange: the importer has completed an integration step.
     ///
     /// # Errors
     ///
-    /// It is not the time for it, or the mechanism cannot be evaluated.
+    /// The call is not allowed now, or the mechanism cannot be evaluated.
     pub fn step_completed(&mut self) -> Result<(), Refusal> {
         self.expect(&[Mode::ContinuousTime])?;
         let state = self.now.state();
         let Some(running) = &mut self.running else { return refused("there is no motion") };
-        running
-            .with(|simulation| simulation.step_completed(&state))
-            .map_err(|error| Refusal(error.to_string()))
+        running.with(|simulation| simulation.step_completed(&state)).map_err(|error| Refusal(error.told()))
     }
 
-    /// Model exchange: the time, s.
+    /// Model exchange: sets the time, s.
     ///
     /// # Errors
     ///
-    /// It is not finite, or not the time for it.
+    /// The time is not finite, or the call is not allowed now.
     pub fn set_time(&mut self, time: f64) -> Result<(), Refusal> {
         self.expect(&[Mode::Event, Mode::ContinuousTime])?;
         if !time.is_finite() {
-            return refused(format!("the time is {time}: it must be finite"));
+            return refused(not_finite("the time", time));
         }
         self.now.time = time;
         Ok(())
     }
 
-    /// Coordinates, then speeds.
+    /// Reads coordinates, then speeds.
     ///
     /// # Errors
     ///
@@ -448,26 +439,30 @@ impl Instance {
         fill(states, &all)
     }
 
-    /// Model exchange: coordinates, then speeds, as they were integrated.
+    /// Model exchange: sets coordinates, then speeds.
     ///
     /// # Errors
     ///
-    /// They are not finite, `states` has another length, or it is not the time for it.
+    /// They are not finite, `states` has another length, or the call is not allowed now.
     pub fn set_states(&mut self, states: &[f64]) -> Result<(), Refusal> {
         self.expect(&[Mode::Event, Mode::ContinuousTime])?;
         let n = self.now.coordinates.len();
         if states.len() != n + self.now.speeds.len() {
-            return refused(format!("there are {} states, not {}", n + self.now.speeds.len(), states.len()));
+            let (count, found) = (n + self.now.speeds.len(), states.len());
+            return refused(StateError::Length { what: "states", expected: count, found }.told());
         }
-        if let Some(bad) = states.iter().find(|value| !value.is_finite()) {
-            return refused(format!("a state is {bad}: it must be finite"));
+        if let Some(place) = states.iter().position(|value| !value.is_finite()) {
+            let kind =
+                if place < n { VariableKind::Coordinate(place) } else { VariableKind::Speed(place - n) };
+            let variable = self.layout.variables.iter().find(|variable| variable.kind == kind);
+            return refused(not_finite(variable.map_or("a state", |variable| &variable.name), states[place]));
         }
         self.now.coordinates.copy_from_slice(&states[..n]);
         self.now.speeds.copy_from_slice(&states[n..]);
         Ok(())
     }
 
-    /// Rates of the states.
+    /// Reads the rates of the states.
     ///
     /// # Errors
     ///
@@ -478,7 +473,7 @@ impl Instance {
         fill(rates, Values::new(running, &self.now).rates()?)
     }
 
-    /// The indicators of events.
+    /// Reads the event indicators.
     ///
     /// # Errors
     ///
@@ -489,11 +484,11 @@ impl Instance {
         fill(values, Values::new(running, &self.now).indicators()?)
     }
 
-    /// Co-simulation: goes on by `step` from the time where the motion is.
+    /// Co-simulation: advances the motion by `step` from the time `from`, which must be the present one.
     ///
     /// # Errors
     ///
-    /// The motion cannot go on, the step is not positive, or begins elsewhere.
+    /// The motion cannot continue, the step is not positive, or `from` is not the present time.
     pub fn do_step(&mut self, from: f64, step: f64) -> Result<(), Refusal> {
         self.expect(&[Mode::Step])?;
         if !(step > 0.0 && step.is_finite()) {
@@ -505,43 +500,41 @@ impl Instance {
         }
         let inputs = self.now.inputs.clone();
         let Some(running) = &mut self.running else { return refused("there is no motion") };
-        running
-            .with(|simulation| simulation.set_inputs(&inputs))
-            .map_err(|error| Refusal(error.to_string()))?;
+        running.with(|simulation| simulation.set_inputs(&inputs)).map_err(|error| Refusal(error.told()))?;
         let done = self.advance(from + step);
-        // Simulations hold the inputs of their last step.
+        // Simulations keep the inputs of their last step.
         self.now.inputs = inputs;
         done
     }
 
-    /// The time where it is, s.
+    /// The present time, s.
     pub fn time(&self) -> f64 {
         self.now.time
     }
 
-    /// Nothing follows.
+    /// Terminates the motion.
     ///
     /// # Errors
     ///
-    /// It has not begun.
+    /// The motion has not started.
     pub fn terminate(&mut self) -> Result<(), Refusal> {
         self.expect(&[Mode::Event, Mode::ContinuousTime, Mode::Step])?;
         self.mode = Mode::Terminated;
         Ok(())
     }
 
-    /// As it was when it was instantiated.
+    /// Resets the unit to its state after instantiation.
     pub fn reset(&mut self) {
         self.settings = Settings::of(&self.layout, &self.defaults);
         self.now = self.settings.start.clone();
         (self.mode, self.running, self.events) = (Mode::Instantiated, None, 0);
     }
 
-    /// Derivatives of `unknowns` along a direction that changes each of `knowns` by its seed.
+    /// Derivatives of `unknowns` along the direction that changes each of `knowns` by its seed.
     ///
     /// # Errors
     ///
-    /// A variable is no unknown or no known, or values cannot be computed beside the state.
+    /// A variable cannot be an unknown or a known, or values cannot be computed near the state.
     pub fn directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -550,14 +543,14 @@ impl Instance {
         sensitivity: &mut [f64],
     ) -> Result<(), Refusal> {
         let layout = Arc::clone(&self.layout);
-        let unknowns = layout.whats(unknowns, sensitivity.len())?;
-        let knowns = layout.whats(knowns, seed.len())?;
+        let unknowns = layout.kinds(unknowns, sensitivity.len())?;
+        let knowns = layout.kinds(knowns, seed.len())?;
         if self.mode == Mode::Instantiated {
             return refused("there are no derivatives before the initialization");
         }
         self.running()?;
         let Some(running) = &self.running else { return refused("there is no motion") };
-        let knowns: Vec<(What, f64)> = knowns.into_iter().zip(seed.iter().copied()).collect();
+        let knowns: Vec<(VariableKind, f64)> = knowns.into_iter().zip(seed.iter().copied()).collect();
         fill(sensitivity, &directional(running, &self.now, &unknowns, &knowns)?)
     }
 
@@ -577,7 +570,16 @@ impl Instance {
     }
 }
 
-/// Takes the time and the state to which a motion was advanced.
+/// The law of this number; they count from 1.
+fn law_of(number: i64) -> Result<Law, Refusal> {
+    let place = number.checked_sub(1).and_then(|place| usize::try_from(place).ok());
+    match place.and_then(|place| Law::ALL.get(place)) {
+        Some(law) => Ok(*law),
+        None => Law::read(&number.to_string()).map_err(|error| Refusal(error.told())),
+    }
+}
+
+/// Copies the time and the state of a motion.
 fn take(now: &mut Now, simulation: &Simulation<'_>) {
     now.time = simulation.time();
     now.coordinates.copy_from_slice(simulation.coordinates());

@@ -1,23 +1,25 @@
-//! The variables of a unit, numbered: what a value reference stands for.
+//! The variables of a unit; their index is their value reference.
 
-use hodograph::{ComponentKind, Contacts, Law, State, Surface};
+use hodograph::{Cause, ComponentKind, Contacts, Law, State, Surface};
 use hodograph_simulation::{Indicator, Options, Simulation};
 
-/// What a unit has beside its generated module: what `hodograph export --fmu` was told.
+use crate::words::Told;
+
+/// The data of a unit besides its generated module: the options of `hodograph export --fmu`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Defaults {
     /// greatest step of the integration in co-simulation, s
     pub max_step: f64,
-    /// number, mu, e and the name of the law of each contact that can close
+    /// index, mu, e and the name of the law of each contact that can close
     pub surfaces: &'static [(usize, f64, f64, &'static str)],
 }
 
-/// The tolerance of the integration where nothing else is said; bounces lower than this are the last.
+/// The default tolerance of the integration; bounces that are lower than this, m, are the last ones.
 pub const TOLERANCE: f64 = 1e-12;
 
-/// What a variable is.
+/// The kinds of variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum What {
+pub enum VariableKind {
     /// the independent variable
     Time,
     /// tolerance of the integration in co-simulation
@@ -50,41 +52,41 @@ pub enum What {
     Gap(usize),
     /// force at a contact along n, t or s
     Force(usize, usize),
-    /// what a contact does: open, stick, slide
+    /// mode of a contact: open, stick, slide
     Phase(usize),
     /// kinetic energy
     KineticEnergy,
     /// potential energy
     PotentialEnergy,
-    /// events so far
+    /// number of events so far
     Events,
-    /// an indicator of events
+    /// an event indicator
     Indicator(usize),
 }
 
-/// A variable: its number is its value reference.
+/// A variable; its index is its value reference.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variable {
     /// name
     pub name: String,
-    /// unit of the model; empty or `1` where it has none
+    /// unit of the model; empty or `1` for a dimensionless variable
     pub unit: String,
-    /// a sentence
+    /// description in a sentence
     pub docs: String,
-    /// what it is
-    pub what: What,
+    /// the kind of variable
+    pub kind: VariableKind,
 }
 
-/// The variables of a unit, and what their start values are.
+/// The variables of a unit, and their start values.
 #[derive(Clone, Debug)]
 pub struct Layout {
     /// by value reference
     pub variables: Vec<Variable>,
-    /// of [`What::Indicator`]
+    /// the event indicators, by the index in [`VariableKind::Indicator`]
     pub indicators: Vec<Indicator>,
     /// the contacts that can close, with their surfaces
     pub surfaces: Vec<(usize, Surface<f64>)>,
-    /// parameters, coordinates, speeds and inputs that the model states
+    /// the values of parameters, coordinates, speeds and inputs in the model
     pub start: [Vec<f64>; 4],
     /// whether the mechanism has a potential energy
     pub has_potential: bool,
@@ -95,15 +97,16 @@ impl Layout {
     ///
     /// # Errors
     ///
-    /// A sentence: a contact that can close has no surface, or the motion cannot begin in the state that the model states.
+    /// A sentence: a contact that can close has no surface, or the motion cannot start in the state of the
+    /// model.
     pub fn of(mechanism: &dyn Contacts<f64>, defaults: &Defaults) -> Result<Self, String> {
         let count = |kind| mechanism.count(kind);
         let zeros = |kind| vec![0.0; count(kind)];
         let mut parameters = zeros(ComponentKind::Parameter);
         let (mut q, mut u) = (zeros(ComponentKind::Coordinate), zeros(ComponentKind::Speed));
         let mut inputs = zeros(ComponentKind::Input);
-        mechanism.parameter_values(&mut parameters).map_err(|error| error.to_string())?;
-        mechanism.initial_state(&mut q, &mut u, &mut inputs).map_err(|error| error.to_string())?;
+        mechanism.parameter_values(&mut parameters).map_err(|error| error.told())?;
+        mechanism.initial_state(&mut q, &mut u, &mut inputs).map_err(|error| error.told())?;
         let guess = q.clone();
         close_loops(mechanism, 0.0, &mut q, &u, &inputs)?;
         let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
@@ -117,13 +120,13 @@ impl Layout {
             let Some(surface) = given.or_else(|| mechanism.surface(contact)) else {
                 let name =
                     mechanism.component(ComponentKind::Contact, contact).map_or("?", |found| found.name);
-                return Err(format!("contact {name} has no surface"));
+                return Err(format!("{}: contact {name} has no surface", Cause::NoSurface.name()));
             };
             surfaces.push((contact, surface));
         }
         let options = Options { surfaces: surfaces.clone(), ..Options::default() };
-        let simulation = Simulation::new(mechanism, &state, options).map_err(|error| error.to_string())?;
-        let has_potential = mechanism.potential_energy(&state).map_err(|error| error.to_string())?.is_some();
+        let simulation = Simulation::new(mechanism, &state, options).map_err(|error| error.told())?;
+        let has_potential = mechanism.potential_energy(&state).map_err(|error| error.told())?.is_some();
         let mut layout = Self {
             variables: Vec::new(),
             indicators: simulation.indicators(),
@@ -135,37 +138,37 @@ impl Layout {
         Ok(layout)
     }
 
-    /// The variable of a value reference.
+    /// The variable with a value reference.
     pub fn get(&self, reference: u32) -> Option<&Variable> {
         self.variables.get(usize::try_from(reference).ok()?)
     }
 
-    /// The variables of value references, as many as there is room for.
+    /// The kinds of the variables with these value references, of which there must be `room`.
     ///
     /// # Errors
     ///
-    /// A sentence.
-    pub fn whats(&self, references: &[u32], room: usize) -> Result<Vec<What>, String> {
+    /// A sentence: the numbers of references and values differ, or a variable does not exist.
+    pub fn kinds(&self, references: &[u32], room: usize) -> Result<Vec<VariableKind>, String> {
         if references.len() != room {
             let count = references.len();
             return Err(format!("there are {count} variables and {room} values: all are scalars"));
         }
         let what = |reference: &u32| match self.get(*reference) {
-            Some(variable) => Ok(variable.what),
+            Some(variable) => Ok(variable.kind),
             None => Err(format!("there is no variable with the value reference {reference}")),
         };
         references.iter().map(what).collect()
     }
 
     /// The value reference of a variable.
-    pub fn reference(&self, what: What) -> Option<usize> {
-        self.variables.iter().position(|variable| variable.what == what)
+    pub fn reference(&self, what: VariableKind) -> Option<usize> {
+        self.variables.iter().position(|variable| variable.kind == what)
     }
 
     fn all(&self, mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Vec<Variable> {
         let mut all = Vec::new();
-        let mut add = |name: String, unit: &str, docs: &str, what: What| {
-            all.push(Variable { name, unit: unit.to_owned(), docs: docs.to_owned(), what });
+        let mut add = |name: String, unit: &str, docs: &str, what: VariableKind| {
+            all.push(Variable { name, unit: unit.to_owned(), docs: docs.to_owned(), kind: what });
         };
         let named = |kind: ComponentKind, index: usize| {
             let found = mechanism.component(kind, index);
@@ -174,33 +177,33 @@ impl Layout {
             })
         };
         let count = |kind| 0..mechanism.count(kind);
-        add("time".into(), "s", "time", What::Time);
+        add("time".into(), "s", "time", VariableKind::Time);
         add(
             "hodograph.tolerance".into(),
             "",
             "relative and absolute tolerance of the integration in co-simulation; lower bounces end in contact",
-            What::Tolerance,
+            VariableKind::Tolerance,
         );
         let docs = "greatest step of the integration in co-simulation";
-        add("hodograph.max_step".into(), "s", docs, What::MaxStep);
+        add("hodograph.max_step".into(), "s", docs, VariableKind::MaxStep);
         for index in count(ComponentKind::Parameter) {
             let (name, unit) = named(ComponentKind::Parameter, index);
-            add(name, &unit, "parameter of the model", What::Parameter(index));
+            add(name, &unit, "parameter of the model", VariableKind::Parameter(index));
         }
         let contact =
             |index: usize, what: &str| format!("contacts.{}.{what}", named(ComponentKind::Contact, index).0);
         for &(index, _) in &self.surfaces {
-            add(contact(index, "mu"), "", "coefficient of friction", What::Mu(index));
-            add(contact(index, "e"), "", "coefficient of restitution", What::Restitution(index));
-            add(contact(index, "law"), "", "hypothesis of restitution", What::Law(index));
+            add(contact(index, "mu"), "", "coefficient of friction", VariableKind::Mu(index));
+            add(contact(index, "e"), "", "coefficient of restitution", VariableKind::Restitution(index));
+            add(contact(index, "law"), "", "hypothesis of restitution", VariableKind::Law(index));
         }
         for index in count(ComponentKind::Input) {
             let (name, unit) = named(ComponentKind::Input, index);
-            add(name, &unit, "input of the model", What::Input(index));
+            add(name, &unit, "input of the model", VariableKind::Input(index));
         }
         for (kind, docs, what) in [
-            (ComponentKind::Coordinate, "coordinate", What::Coordinate as fn(usize) -> What),
-            (ComponentKind::Speed, "independent speed", What::Speed),
+            (ComponentKind::Coordinate, "coordinate", VariableKind::Coordinate as fn(usize) -> VariableKind),
+            (ComponentKind::Speed, "independent speed", VariableKind::Speed),
         ] {
             for index in count(kind) {
                 let (name, unit) = named(kind, index);
@@ -208,8 +211,8 @@ impl Layout {
             }
         }
         for (kind, what) in [
-            (ComponentKind::Coordinate, What::CoordinateRate as fn(usize) -> What),
-            (ComponentKind::Speed, What::SpeedRate),
+            (ComponentKind::Coordinate, VariableKind::CoordinateRate as fn(usize) -> VariableKind),
+            (ComponentKind::Speed, VariableKind::SpeedRate),
         ] {
             for index in count(kind) {
                 let (name, unit) = named(kind, index);
@@ -218,40 +221,40 @@ impl Layout {
         }
         for index in count(ComponentKind::DependentSpeed) {
             let (name, unit) = named(ComponentKind::DependentSpeed, index);
-            add(name, &unit, "dependent speed", What::DependentSpeed(index));
+            add(name, &unit, "dependent speed", VariableKind::DependentSpeed(index));
         }
         for index in count(ComponentKind::Point) {
-            // Of some points the model knows the velocity only.
+            // The model states only the velocity of some points.
             if mechanism.position(index, state).is_err() {
                 continue;
             }
             let (name, _) = named(ComponentKind::Point, index);
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let docs = "position from O along this axis of N";
-                add(format!("points.{name}.{letter}"), "m", docs, What::Position(index, axis));
+                add(format!("points.{name}.{letter}"), "m", docs, VariableKind::Position(index, axis));
             }
         }
         for &(index, _) in &self.surfaces {
-            add(contact(index, "gap"), "m", "distance of the striking point", What::Gap(index));
+            add(contact(index, "gap"), "m", "distance of the striking point", VariableKind::Gap(index));
             for (axis, letter) in ["n", "t", "s"].into_iter().enumerate() {
                 let docs =
                     "force on the striking point along this axis of the contact, zero where it is open";
-                add(contact(index, &format!("force.{letter}")), "N", docs, What::Force(index, axis));
+                add(contact(index, &format!("force.{letter}")), "N", docs, VariableKind::Force(index, axis));
             }
-            add(contact(index, "phase"), "", "what the bodies do", What::Phase(index));
+            add(contact(index, "phase"), "", "what the bodies do", VariableKind::Phase(index));
         }
-        add("energy.kinetic".into(), "J", "kinetic energy in N", What::KineticEnergy);
+        add("energy.kinetic".into(), "J", "kinetic energy in N", VariableKind::KineticEnergy);
         if self.has_potential {
-            add("energy.potential".into(), "J", "of gravity and springs", What::PotentialEnergy);
+            add("energy.potential".into(), "J", "of gravity and springs", VariableKind::PotentialEnergy);
         }
-        add("events".into(), "", "number of events since the start", What::Events);
+        add("events".into(), "", "number of events since the start", VariableKind::Events);
         for (place, indicator) in self.indicators.iter().enumerate() {
             let of = indicator
                 .contact
                 .map_or(String::new(), |contact| format!("{}.", named(ComponentKind::Contact, contact).0));
             let docs = "event where it falls to zero; 1 where it watches nothing";
             let name = format!("indicators.{of}{}", indicator.kind.name());
-            add(name, "", docs, What::Indicator(place));
+            add(name, "", docs, VariableKind::Indicator(place));
         }
         all
     }
@@ -266,15 +269,15 @@ fn per_second(unit: &str) -> String {
     }
 }
 
-/// Newton's steps at most, and the change of a coordinate relative to its size below which loops are closed.
+/// Largest number of Newton steps, and the relative change of a coordinate below which loops count as closed.
 const STEPS: usize = 50;
 const CLOSED: f64 = 1e-10;
 
-/// Closes the loops of a state from its guess of the dependent coordinates, and brings quaternions to length one.
+/// Closes the loops of a state, starting from its dependent coordinates, and normalises quaternions.
 ///
 /// # Errors
 ///
-/// A sentence.
+/// A sentence: the loops cannot be closed.
 pub fn close_loops(
     mechanism: &dyn Contacts<f64>,
     time: f64,
@@ -285,7 +288,7 @@ pub fn close_loops(
     let mut left = f64::INFINITY;
     for _ in 0..STEPS {
         left = hodograph_simulation::close_loops(mechanism, time, coordinates, speeds, inputs)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| error.told())?;
         if left <= CLOSED {
             return Ok(());
         }

@@ -1,9 +1,9 @@
 //! Mechanisms as functional mock-up units of FMI 3.0, for model exchange and co-simulation.
 //!
-//! [`export!`] gives a shared library (`crate-type = ["cdylib"]`) that holds a generated module the functions of the
-//! standard, and [`description`] writes the `modelDescription.xml` beside it. Both number the variables by one
-//! [`Layout`]. `hodograph export --fmu` writes, builds and packs all of it; docs/fmu.md says what a unit has and how it is
-//! used.
+//! [`export!`] generates the functions of the standard in a shared library (`crate-type = ["cdylib"]`) with a
+//! generated module, and [`description`] writes its `modelDescription.xml`. Both use the same numbers of
+//! variables, those of a [`Layout`]. `hodograph export --fmu` writes, builds and packs all of it; docs/fmu.md
+//! describes the content and the use of a unit.
 //!
 //! ```ignore
 //! mod mechanism; // the generated module
@@ -14,10 +14,12 @@
 //! );
 //! ```
 //!
-//! Motion is that of `hodograph-simulation`: co-simulation advances it, model exchange asks it for rates and indicators and
-//! leaves to it what happens at an event. Safe code computes ([`Instance`]); `unsafe` is in `abi`, where numbers come from C
-//! and go to it, in `running`, which keeps a mechanism beside the simulation that borrows it, and in the symbols of
-//! [`export!`].
+//! Motion is that of `hodograph-simulation`. Co-simulation advances it; model exchange reads rates and
+//! indicators from it, and lets it handle events. Computations are safe code ([`Instance`]); `unsafe` is used
+//! in `abi`, where data come from C and return to it, in `running`, which stores a mechanism together with
+//! the simulation that borrows it, and in the symbols of [`export!`].
+//!
+//! [`motion`] is that of the libraries which `hodograph export --c` writes.
 
 #![deny(unsafe_code)]
 
@@ -29,15 +31,17 @@ mod description;
 mod image;
 mod instance;
 mod layout;
+pub mod motion;
 #[allow(unsafe_code)]
 mod running;
 mod settings;
 mod symbols;
 mod values;
+mod words;
 
 pub use description::{description, escaped};
 pub use instance::{Instance, Kind, Refusal};
-pub use layout::{Defaults, Layout, Variable, What};
+pub use layout::{Defaults, Layout, Variable, VariableKind};
 
 #[doc(hidden)]
 pub use hodograph::Contacts;

@@ -7,17 +7,17 @@ use hodograph_simulation::{Options, Simulation, SimulationError};
 
 /// A motion and its mechanism.
 pub struct Running {
-    // Dropped first: it borrows from the mechanism.
+    // Dropped first, since it borrows from the mechanism.
     simulation: Simulation<'static>,
     mechanism: Arc<dyn Contacts<f64>>,
 }
 
 impl Running {
-    /// A motion that begins in this state.
+    /// A motion that starts in this state.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::new`].
+    /// Those of [`Simulation::new`].
     pub fn begin(
         mechanism: Arc<dyn Contacts<f64>>,
         state: &State<'_>,
@@ -35,14 +35,14 @@ impl Running {
         &*self.mechanism
     }
 
-    /// The motion. Its own `mechanism()` must not be kept: use that of this struct.
+    /// The motion. Do not store a reference to its own `mechanism()`; use that of this struct.
     pub fn simulation(&self) -> &Simulation<'_> {
         &self.simulation
     }
 
     /// Changes the motion.
     pub fn with<R>(&mut self, change: impl FnOnce(&mut Simulation<'_>) -> R) -> R {
-        // A closure for every lifetime can put nothing shorter into the simulation.
+        // A closure for every lifetime cannot store a shorter reference in the simulation.
         change(&mut self.simulation)
     }
 }

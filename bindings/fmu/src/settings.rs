@@ -1,4 +1,4 @@
-//! What a unit is given: a state, and what is fixed with the initialization.
+//! The state of a unit, and its settings, which are fixed after the initialization.
 
 use hodograph::{Law, State};
 use serde::{Deserialize, Serialize};
@@ -19,29 +19,29 @@ pub struct Now {
 }
 
 impl Now {
-    /// As mechanisms take it.
+    /// The state for the traits of mechanisms.
     pub fn state(&self) -> State<'_> {
         State { time: self.time, coordinates: &self.coordinates, speeds: &self.speeds, inputs: &self.inputs }
     }
 }
 
-/// What is fixed with the initialization.
+/// The values that are fixed after the initialization.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// of the integration
+    /// tolerance of the integration
     pub tolerance: f64,
     /// greatest step of the integration, s
     pub max_step: f64,
-    /// of the model
+    /// values of the parameters
     pub parameters: Vec<f64>,
-    /// mu, e and the number of the law, from 1, of each contact that can close
+    /// index of each contact that can close, with mu, e and the number of its law, from 1
     pub surfaces: Vec<(usize, f64, f64, i64)>,
-    /// the state from which the motion begins
+    /// the initial state
     pub start: Now,
 }
 
 impl Settings {
-    /// What the model states.
+    /// The settings that the model states.
     pub fn of(layout: &Layout, defaults: &Defaults) -> Self {
         let [parameters, coordinates, speeds, inputs] = layout.start.clone();
         let law =

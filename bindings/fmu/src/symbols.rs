@@ -1,7 +1,8 @@
-//! The symbols of a unit: functions of the standard by their names.
+//! The symbols of a unit: the functions of the standard by their names.
 
-/// Gives a shared library the functions of FMI 3.0 for a generated module: its type without the scalar, the token of its
-/// `modelDescription.xml`, and what the module does not know by itself ([`crate::Defaults`]).
+/// Generates the functions of FMI 3.0 for a generated module in a shared library. Arguments: the type of the
+/// mechanism without the scalar, the token of its `modelDescription.xml`, and the data that the module does
+/// not contain ([`crate::Defaults`]).
 #[macro_export]
 macro_rules! export {
     ($mechanism:ident in $module:path, token = $token:expr, defaults = $defaults:expr) => {
@@ -133,8 +134,8 @@ macro_rules! export {
                 fmi3DeserializeFMUState(bytes: *const u8, size: usize, state: *mut *mut c_void);
             }
 
-            // No variable has these types, no unit of ours has clocks, arrays of structural parameters or event mode in
-            // co-simulation.
+            // No variable has these types, and units have neither clocks nor arrays of structural parameters
+            // nor event mode in co-simulation.
             $crate::not_offered! {
                 fmi3GetFloat32(references: *const u32, count: usize, values: *mut f32, room: usize);
                 fmi3SetFloat32(references: *const u32, count: usize, values: *const f32, room: usize);
@@ -244,7 +245,7 @@ macro_rules! forwarded {
     };
 }
 
-/// Functions that a unit must have and answer with an error.
+/// Functions that a unit must have, but that return an error.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! not_offered {

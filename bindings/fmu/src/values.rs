@@ -1,13 +1,15 @@
-//! What variables are in a state.
+//! The values of variables that are computed from a state.
 
 use hodograph::{ComponentKind, Mechanism, State};
 use hodograph_simulation::{ContactForces, ContactPhase, Simulation};
 
-use crate::layout::What;
+use crate::layout::VariableKind;
 use crate::running::Running;
 use crate::settings::Now;
+use crate::words::Told;
 
-/// The variables that follow from a state, evaluated as they are asked for; what several need is computed once.
+/// The variables that are computed from a state. They are evaluated when they are read; intermediate results
+/// are stored.
 pub struct Values<'r> {
     running: &'r Running,
     now: &'r Now,
@@ -18,7 +20,7 @@ pub struct Values<'r> {
 }
 
 impl<'r> Values<'r> {
-    /// Of a state.
+    /// The values in a state.
     pub fn new(running: &'r Running, now: &'r Now) -> Self {
         Self { running, now, rates: None, forces: None, indicators: None, dependent: None }
     }
@@ -31,43 +33,47 @@ impl<'r> Values<'r> {
         self.running.simulation()
     }
 
-    /// A number.
+    /// The value of a number.
     ///
     /// # Errors
     ///
-    /// A sentence: it is no number that follows from the state, or cannot be evaluated there.
-    pub fn number(&mut self, what: What) -> Result<f64, String> {
+    /// A sentence: the variable is not computed from the state, or cannot be evaluated there.
+    pub fn number(&mut self, what: VariableKind) -> Result<f64, String> {
         let mechanism: &dyn Mechanism = self.running.mechanism();
         let state = self.state();
-        let missing = || "the variable is no number that follows from the state".to_owned();
+        let missing = || "the variable is not a number that is computed from the state".to_owned();
         let (n, now) = (state.coordinates.len(), self.now);
         let value = match what {
-            What::Time => now.time,
-            What::Input(index) => *now.inputs.get(index).ok_or_else(missing)?,
-            What::Coordinate(index) => *now.coordinates.get(index).ok_or_else(missing)?,
-            What::Speed(index) => *now.speeds.get(index).ok_or_else(missing)?,
-            What::CoordinateRate(index) => *self.rates()?.get(index).ok_or_else(missing)?,
-            What::SpeedRate(index) => *self.rates()?.get(n + index).ok_or_else(missing)?,
-            What::DependentSpeed(index) => *self.dependent_speeds()?.get(index).ok_or_else(missing)?,
-            What::Position(point, axis) => {
+            VariableKind::Time => now.time,
+            VariableKind::Input(index) => *now.inputs.get(index).ok_or_else(missing)?,
+            VariableKind::Coordinate(index) => *now.coordinates.get(index).ok_or_else(missing)?,
+            VariableKind::Speed(index) => *now.speeds.get(index).ok_or_else(missing)?,
+            VariableKind::CoordinateRate(index) => *self.rates()?.get(index).ok_or_else(missing)?,
+            VariableKind::SpeedRate(index) => *self.rates()?.get(n + index).ok_or_else(missing)?,
+            VariableKind::DependentSpeed(index) => {
+                *self.dependent_speeds()?.get(index).ok_or_else(missing)?
+            }
+            VariableKind::Position(point, axis) => {
                 *mechanism.position(point, &state).map_err(text)?.as_slice().get(axis).ok_or_else(missing)?
             }
-            What::Gap(contact) => {
+            VariableKind::Gap(contact) => {
                 self.running.mechanism().gap(contact, &state).map_err(text)?.ok_or_else(missing)?
             }
-            What::Force(contact, axis) => {
+            VariableKind::Force(contact, axis) => {
                 let found = self.forces()?.iter().find(|(index, _)| *index == contact);
                 found.map_or(0.0, |(_, force)| force.as_slice().get(axis).copied().unwrap_or(0.0))
             }
-            What::KineticEnergy => mechanism.kinetic_energy(&state).map_err(text)?,
-            What::PotentialEnergy => mechanism.potential_energy(&state).map_err(text)?.ok_or_else(missing)?,
-            What::Indicator(place) => *self.indicators()?.get(place).ok_or_else(missing)?,
+            VariableKind::KineticEnergy => mechanism.kinetic_energy(&state).map_err(text)?,
+            VariableKind::PotentialEnergy => {
+                mechanism.potential_energy(&state).map_err(text)?.ok_or_else(missing)?
+            }
+            VariableKind::Indicator(place) => *self.indicators()?.get(place).ok_or_else(missing)?,
             _ => return Err(missing()),
         };
         if value.is_finite() { Ok(value) } else { Err(format!("the answer is {value} in this state")) }
     }
 
-    /// What a contact does: 0 open, 1 stick, 2 slide.
+    /// The mode of a contact: 0 open, 1 stick, 2 slide.
     pub fn phase(&self, contact: usize) -> i64 {
         match self.simulation().phase(contact) {
             Some(ContactPhase::Stick) => 1,
@@ -80,7 +86,7 @@ impl<'r> Values<'r> {
     ///
     /// # Errors
     ///
-    /// A sentence.
+    /// A sentence: they cannot be computed.
     pub fn rates(&mut self) -> Result<&[f64], String> {
         let (state, simulation) = (self.state(), self.simulation());
         let found = self.rates.get_or_insert_with(|| {
@@ -91,11 +97,11 @@ impl<'r> Values<'r> {
         found.as_deref().map_err(Clone::clone)
     }
 
-    /// The indicators of events.
+    /// The event indicators.
     ///
     /// # Errors
     ///
-    /// A sentence.
+    /// A sentence: they cannot be computed.
     pub fn indicators(&mut self) -> Result<&[f64], String> {
         let (state, simulation) = (self.state(), self.simulation());
         let found = self.indicators.get_or_insert_with(|| simulation.indicator_values(&state).map_err(text));
@@ -119,6 +125,6 @@ impl<'r> Values<'r> {
     }
 }
 
-fn text(error: impl std::fmt::Display) -> String {
-    error.to_string()
+fn text(error: impl Told) -> String {
+    error.told()
 }

@@ -2,12 +2,19 @@
 //! `bindings/fmu/test` tries units in FMPy.
 
 use std::collections::HashSet;
+use std::path::Path;
 
 use hodograph::{Contacts, Law, State, Surface};
-use hodograph_fmu::{Defaults, Instance, Kind, Layout, What, description};
+use hodograph_fmu::{Defaults, Instance, Kind, Layout, Refusal, VariableKind, description};
 use hodograph_models::four_bar::FourBar;
 use hodograph_models::planar_double_pendulum::PlanarDoublePendulum;
 use hodograph_simulation::{Options, Simulation};
+use serde_json::Value;
+
+#[allow(missing_docs)]
+mod emitted {
+    hodograph::mechanism!("../../tests/data/doors/errors.mech");
+}
 
 const DEFAULTS: Defaults = Defaults { max_step: f64::INFINITY, surfaces: &[(0, 0.4, 0.5, "stronge")] };
 
@@ -72,7 +79,7 @@ fn co_simulation_is_the_motion_of_the_simulation() {
         }
     }
     let mut counted = [0];
-    let reference = unit.layout().reference(What::Events).unwrap() as u32;
+    let reference = unit.layout().reference(VariableKind::Events).unwrap() as u32;
     unit.integers(&[reference], &mut counted).unwrap();
     assert!(events > 0);
     assert_eq!(counted[0], events as i64);
@@ -136,5 +143,69 @@ fn calls_at_the_wrong_time_are_refused() {
 fn a_contact_without_a_surface_is_refused() {
     let none = Defaults { max_step: 1.0, surfaces: &[] };
     let refused = Layout::of(&*pendulum(), &none).unwrap_err();
-    assert_eq!(refused, "contact tip_wall has no surface");
+    assert_eq!(refused, "no_surface: contact tip_wall has no surface");
+}
+
+/// What a unit refuses, which is what it writes to the log of the importer.
+fn refused(mistake: &Value) -> Result<(), Refusal> {
+    let make: fn() -> Box<dyn Contacts> = || Box::new(emitted::errors::Errors::<f64>::default());
+    let defaults = match &mistake["mu"] {
+        Value::Null if mistake["call"] == "simulate" => Defaults { max_step: 1.0, surfaces: &[] },
+        _ => DEFAULTS,
+    };
+    let exchange = mistake["call"] == "accelerations";
+    let mut unit =
+        Instance::new(make, defaults, if exchange { Kind::ModelExchange } else { Kind::CoSimulation })?;
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| value.as_str().unwrap().parse().unwrap());
+    let reference = |name: &str, unit: &Instance| {
+        unit.layout().variables.iter().position(|variable| variable.name == name).unwrap() as u32
+    };
+    let mut set = |name: &str, value: &Value| -> Result<(), Refusal> {
+        if value.is_null() { Ok(()) } else { unit.set_floats(&[reference(name, &unit)], &[number(value)]) }
+    };
+    set("contacts.floor.mu", &mistake["mu"])?;
+    set("contacts.floor.e", &mistake["e"])?;
+    set("hodograph.tolerance", &mistake["tolerance"])?;
+    let sections: &[&str] = if exchange { &["parameters"] } else { &["parameters", "q", "u"] };
+    for section in sections {
+        for (name, value) in mistake[section].as_object().into_iter().flatten() {
+            set(name, value)?;
+        }
+    }
+    if mistake["law"] == "hooke" {
+        unit.set_integers(&[reference("contacts.floor.law", &unit)], &[9])?;
+    }
+    unit.enter_initialization(0.0)?;
+    unit.exit_initialization()?;
+    if !exchange {
+        return unit.do_step(0.0, 0.1);
+    }
+    // The importer comes to the state while it integrates.
+    unit.enter_continuous_time()?;
+    let mut states = [0.0; 6];
+    unit.states(&mut states)?;
+    for (place, name) in ["s", "z", "a", "us", "uz", "ua"].into_iter().enumerate() {
+        for section in ["q", "u"] {
+            let value = &mistake[section][name];
+            states[place] = if value.is_null() { states[place] } else { number(value) };
+        }
+    }
+    unit.set_states(&states)?;
+    unit.rates(&mut [0.0; 6])
+}
+
+#[test]
+fn bad_input_has_the_errors_of_every_door() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/doors/errors.json");
+    let mistakes: Vec<Value> = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let mut count = 0;
+    for mistake in
+        mistakes.iter().filter(|one| one["doors"].as_array().unwrap().iter().any(|door| door == "fmu"))
+    {
+        let Err(Refusal(said)) = refused(mistake) else { panic!("{mistake} is taken") };
+        assert!(said.starts_with(&format!("{}: ", mistake["kind"].as_str().unwrap())), "{mistake}: {said}");
+        assert!(said.contains(mistake["words"].as_str().unwrap()), "{mistake}: {said}");
+        count += 1;
+    }
+    assert!(count > 10, "{count}");
 }

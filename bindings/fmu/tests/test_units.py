@@ -214,6 +214,17 @@ def test_directional_derivatives_are_known_ones_and_those_of_differences():
             assert np.allclose(found, expected, rtol=1e-8, atol=1e-8), (name, found, expected)
 
 
+def test_twenty_states_have_the_bits_of_every_door():
+    table = np.loadtxt(ROOT / "tests/data/doors/planar_double_pendulum.csv", delimiter=",", skiprows=1)
+    assert len(table) == 20
+    with Unit("planar_double_pendulum", FMU3Model).start() as pendulum:
+        pendulum.fmu.enterContinuousTimeMode()
+        for row in table:
+            pendulum.fmu.setContinuousStates((c_double * 4)(*row[:4]), 4)
+            found = pendulum.get("der(u1)", "der(u2)", "energy.kinetic")
+            assert np.array(found).tobytes() == np.array(row[4:]).tobytes(), row
+
+
 def together(step, until):
     """Two blocks and a spring between them, which the master computes from step to step."""
     with Unit("block").start() as one, Unit("block").start(x=1.0) as two:
@@ -276,7 +287,7 @@ def test_what_is_wrong_is_refused_with_a_sentence():
             "the step is -1 s: it must be positive",
             "the step begins at 0.7 s, but the motion is at 0 s",
         ):
-            assert expected in words, (expected, words)
+            assert any(expected in message for message in words), (expected, words)
 
 
 def test_the_token_of_another_unit_is_refused():

@@ -1,10 +1,14 @@
 //! Arguments: arrays of doubles for one row, shape (p,), or many, shape (n, p).
 
-use hodograph::{Law, Surface};
+use hodograph::{Cause, Law, Surface};
 use hodograph_interpreter::columns::Column;
 use numpy::ndarray::{ArrayD, IxDyn};
-use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyList, PyTuple};
 
 use crate::errors;
 
@@ -51,6 +55,9 @@ impl Rows<'_> {
 
 /// Entries that a masked array hides are not there: they have no number.
 fn refuse_masked(py: Python<'_>, given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    if given.is_exact_instance_of::<PyUntypedArray>() || given.is_exact_instance_of::<PyFloat>() {
+        return Ok(());
+    }
     let Ok(mask) = given.getattr("mask") else { return Ok(()) };
     if mask.call_method0("any")?.is_truthy()? {
         let message =
@@ -58,6 +65,32 @@ fn refuse_masked(py: Python<'_>, given: &Bound<'_, PyAny>, name: &str) -> PyResu
         return Err(errors::argument(py, name, "masked", &message));
     }
     Ok(())
+}
+
+/// An array of whole numbers, or something that gives one, as an array of doubles; none of what is no array. Whole numbers
+/// are doubles without rounding; other kinds of numbers must be converted by who has them.
+fn as_doubles<'py>(
+    py: Python<'py>,
+    given: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
+    let Ok(array) = given.cast::<PyUntypedArray>() else {
+        // Tensors of other packages, columns of tables.
+        if !given.hasattr("__array__")? {
+            return Ok(None);
+        }
+        let array = py.import("numpy")?.call_method1("asarray", (given,))?;
+        return match array.cast::<PyArrayDyn<f64>>() {
+            Ok(doubles) => Ok(Some(doubles.clone())),
+            Err(_) => as_doubles(py, &array, name),
+        };
+    };
+    if matches!(array.dtype().kind(), b'i' | b'u') {
+        return Ok(Some(array.call_method1("astype", ("float64",))?.cast_into::<PyArrayDyn<f64>>()?));
+    }
+    let found = array.dtype().to_string();
+    let message = format!("`{name}` has the dtype {found}: expected float64 (`.astype(float)` converts)");
+    Err(errors::argument(py, name, "wrong_dtype", &message))
 }
 
 /// A table of `width` columns from an array of shape (width,) or (n, width), or `default` where none is
@@ -73,20 +106,24 @@ pub fn rows<'py>(
         return Ok(Rows::of(default.to_vec(), None, width));
     };
     refuse_masked(py, given, name)?;
-    let wrong_shape = |found: String| {
-        errors::argument(
-            py,
-            name,
-            "wrong_shape",
-            &format!("`{name}` has the shape {found}: expected ({width},) or (n, {width})"),
-        )
+    let wrong_shape = |found: String, axes: usize| {
+        let message = format!(
+            "`{name}` has the shape {found}: it must have {width} numbers, ({width},) or (n, {width})"
+        );
+        let kind = if axes <= 2 { Cause::WrongLength.name() } else { "wrong_shape" };
+        errors::argument(py, name, kind, &message)
     };
     if let Ok(array) = given.cast::<PyArrayDyn<f64>>() {
         let shape = array.shape();
         let rows = match *shape {
             [columns] if columns == width => None,
             [rows, columns] if columns == width => Some(rows),
-            _ => return Err(wrong_shape(format!("{shape:?}").replace('[', "(").replace(']', ")"))),
+            _ => {
+                return Err(wrong_shape(
+                    format!("{shape:?}").replace('[', "(").replace(']', ")"),
+                    shape.len(),
+                ));
+            }
         };
         let array = array.try_readonly().map_err(|_| {
             errors::argument(py, name, "borrowed", &format!("`{name}` is being written to elsewhere"))
@@ -99,16 +136,23 @@ pub fn rows<'py>(
         };
         return Ok(Rows { numbers, rows, width });
     }
-    if let Ok(array) = given.cast::<PyUntypedArray>() {
-        let found = array.dtype().to_string();
-        let message = format!("`{name}` has the dtype {found}: expected float64 (`.astype(float)` converts)");
-        return Err(errors::argument(py, name, "wrong_dtype", &message));
+    if let Some(converted) = as_doubles(py, given, name)? {
+        return rows(py, Some(converted.as_any()), name, width, default);
+    }
+    if let Ok(several) = given.extract::<Vec<Vec<f64>>>()
+        && !several.is_empty()
+    {
+        let found = several.len();
+        return match several.iter().find(|row| row.len() != width) {
+            Some(row) => Err(wrong_shape(format!("({found}, {})", row.len()), 2)),
+            None => Ok(Rows { numbers: Numbers::Owned(several.concat()), rows: Some(found), width }),
+        };
     }
     match given.extract::<Vec<f64>>() {
         Ok(numbers) if numbers.len() == width => {
             Ok(Rows { numbers: Numbers::Owned(numbers), rows: None, width })
         }
-        Ok(numbers) => Err(wrong_shape(format!("({},)", numbers.len()))),
+        Ok(numbers) => Err(wrong_shape(format!("({},)", numbers.len()), 1)),
         Err(_) => {
             let kind = given.get_type().name()?;
             let message = format!(
@@ -125,6 +169,14 @@ pub fn column<'py>(py: Python<'py>, given: &Bound<'py, PyAny>, name: &str) -> Py
     if let Ok(number) = given.extract::<f64>() {
         return Ok(Rows { numbers: Numbers::Owned(vec![number]), rows: None, width: 1 });
     }
+    let given = if given.cast::<PyArrayDyn<f64>>().is_ok() {
+        None
+    } else if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
+        given.extract::<Vec<f64>>().ok().map(|numbers| PyArray1::from_vec(py, numbers).to_dyn().clone())
+    } else {
+        as_doubles(py, given, name)?
+    }
+    .map_or_else(|| given.clone(), Bound::into_any);
     let array = match given.cast::<PyArrayDyn<f64>>() {
         Ok(array) if array.shape().len() == 1 => array.try_readonly().ok(),
         _ => None,
@@ -162,10 +214,7 @@ pub fn common(py: Python<'_>, tables: &[(&str, &Rows<'_>)]) -> PyResult<Option<u
 
 /// The law of this name.
 pub fn law_named(py: Python<'_>, name: &str) -> PyResult<Law> {
-    Law::named(name).ok_or_else(|| {
-        let message = format!("the law is '{name}': expected 'newton', 'poisson' or 'stronge'");
-        errors::argument(py, "law", "unknown_law", &message)
-    })
+    Law::read(name).map_err(|error| errors::argument(py, "law", error.kind(), &error.to_string()))
 }
 
 /// Friction, restitution and law of every row.
@@ -179,6 +228,11 @@ impl<'py> Surfaces<'py> {
     pub fn new(py: Python<'py>, mu: &Bound<'py, PyAny>, e: &Bound<'py, PyAny>, law: &str) -> PyResult<Self> {
         let law = law_named(py, law)?;
         Ok(Surfaces { mu: column(py, mu, "mu")?, e: column(py, e, "e")?, law })
+    }
+
+    /// The surface of the only row.
+    pub fn one(&self) -> Surface<f64> {
+        self.of_rows()(0)
     }
 
     /// The surface of each row, for other threads.

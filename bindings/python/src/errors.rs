@@ -1,9 +1,9 @@
-//! Exceptions: the classes are those of `hodograph.errors`, and carry kind, place and number.
+//! Exceptions: the classes are those of the package, and carry kind, place and number.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// An exception of a class of `hodograph.errors`.
+/// An exception of this class of the package.
 pub fn error(
     py: Python<'_>,
     class: &str,
@@ -17,7 +17,7 @@ pub fn error(
         details.set_item("kind", kind)?;
         details.set_item("place", place)?;
         details.set_item("number", number)?;
-        let class = py.import("hodograph.errors")?.getattr(class)?;
+        let class = py.import("hodograph")?.getattr(class)?;
         Ok(PyErr::from_value(class.call((message,), Some(&details))?))
     };
     make().unwrap_or_else(|error| error)

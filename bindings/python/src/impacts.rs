@@ -9,13 +9,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arguments::{Rows, Surfaces, array, common, raises, rows};
-use crate::collisions::{Answers, impact_error};
+use crate::collisions::{Answers, Found, impact_error, width};
 
-const FIELDS: [(&str, usize); 5] =
+/// What [`solve_rows`] answers, and how many numbers that are.
+pub const FIELDS: [(&str, usize); 5] =
     [("impulse", 3), ("velocity", 3), ("contact_work", 1), ("normal_work", 1), ("energy_gained", 1)];
+const WIDTH: usize = width(&FIELDS);
+/// What [`derivative_rows`] answers.
+pub const DERIVATIVES: [(&str, usize); 3] = [("impulse", 33), ("velocity", 33), ("smooth", 1)];
 
 /// The characteristic quantities of a collision, by the paper's names; NaN where one does not exist.
-const CHARACTERISTICS: [&str; 16] = [
+pub const CHARACTERISTICS: [&str; 16] = [
     "c_n", "c_t", "c_s", "mu_c", "phi_c", "mu_s", "phi_hat", "f_hat", "g_hat", "dh_hat", "phi_bar", "I_nC",
     "E_nC", "I_nS", "v_nS", "E_nS",
 ];
@@ -102,10 +106,10 @@ pub fn solve_rows<'py>(
     e: &Bound<'py, PyAny>,
     law: &str,
     errors: &str,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Found<'py>> {
     let given = Given::new(py, matrix, velocity, (mu, e, law))?;
     let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
-    let answers = answered(py, given.rows, raises(py, errors)?, 9, |row, answers| {
+    let answers = answered(py, given.rows, raises(py, errors)?, WIDTH, |row, answers| {
         let mut outcome = Ok(());
         impacts.solve(&surface, row..row + 1, &mut |_, impact| match impact {
             Ok(impact) => {
@@ -118,7 +122,7 @@ pub fn solve_rows<'py>(
         });
         outcome
     })?;
-    answers.into_fields(py, given.rows, &FIELDS)
+    answers.found(py, given.rows, WIDTH)
 }
 
 /// Outcomes of collisions and their derivatives.
@@ -132,11 +136,11 @@ pub fn derivative_rows<'py>(
     e: &Bound<'py, PyAny>,
     law: &str,
     errors: &str,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Found<'py>> {
     let given = Given::new(py, matrix, velocity, (mu, e, law))?;
     let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
     let by_rows = |m: &SMatrix<f64, 3, 11>| m.transpose().as_slice().to_vec();
-    let answers = answered(py, given.rows, raises(py, errors)?, 67, |row, answers| {
+    let answers = answered(py, given.rows, raises(py, errors)?, width(&DERIVATIVES), |row, answers| {
         let (matrix, velocity) = input(&impacts, row);
         let found = hodograph::derivative(&matrix, &velocity, &surface(row))?;
         answers.numbers.extend(by_rows(&found.impulse));
@@ -145,7 +149,7 @@ pub fn derivative_rows<'py>(
         answers.paths.push(found.impact.path.number());
         Ok(())
     })?;
-    answers.into_fields(py, given.rows, &[("impulse", 33), ("velocity", 33), ("smooth", 1)])
+    answers.found(py, given.rows, width(&DERIVATIVES))
 }
 
 /// Characteristic quantities of contacts and of their collisions.
@@ -159,7 +163,7 @@ pub fn characteristics_rows<'py>(
     e: &Bound<'py, PyAny>,
     law: &str,
     errors: &str,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Found<'py>> {
     let given = Given::new(py, matrix, velocity, (mu, e, law))?;
     let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
     let width = CHARACTERISTICS.len();
@@ -184,12 +188,13 @@ pub fn characteristics_rows<'py>(
         answers.paths.push(impact.path.number());
         Ok(())
     })?;
-    answers.into_fields(py, given.rows, &CHARACTERISTICS.map(|name| (name, 1)))
+    answers.found(py, given.rows, width)
 }
 
 /// The course of one collision: snapshots at equal steps of the normal impulse, or at given normal impulses.
 #[pyfunction]
 #[pyo3(name = "hodograph")]
+#[allow(clippy::too_many_arguments)]
 pub fn course<'py>(
     py: Python<'py>,
     matrix: &Bound<'py, PyAny>,

@@ -3,8 +3,7 @@
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use hodograph::Contacts as _;
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph::Contacts;
 use hodograph_simulation::{ContactLaw, GivenLaw, Restitution, Sliding, SpeedFunction};
 use pyo3::prelude::*;
 
@@ -80,7 +79,7 @@ pub fn given(py: Python<'_>, parts: &GivenParts, raised: &Raised) -> PyResult<Gi
 /// contact has a surface of its own.
 pub fn of_contacts(
     py: Python<'_>,
-    mechanism: &InterpretedMechanism,
+    mechanism: &dyn Contacts<f64>,
     all: &GivenLaw,
     own: &[(usize, GivenLaw)],
     contacts: usize,

@@ -4,15 +4,23 @@
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod closed;
 mod collisions;
+mod ends;
 mod errors;
+mod gradients;
 mod impacts;
 mod laws;
+mod machine;
 mod machines;
 mod many;
 mod mechanism;
 mod model;
 mod motion;
+mod numeric;
+mod quantities;
+mod record;
+mod routine;
 mod states;
 
 use hodograph::Path;
@@ -22,13 +30,18 @@ use pyo3::prelude::*;
 #[pymodule]
 fn hodograph_native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<mechanism::Mechanism>()?;
+    module.add_class::<record::Record>()?;
     module.add_function(wrap_pyfunction!(model::check_model, module)?)?;
-    module.add_function(wrap_pyfunction!(model::evaluate_numerically, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::solve_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::derivative_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::characteristics_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::course, module)?)?;
     module.add("KINDS", collisions::kinds())?;
+    module.add("COLLISION", collisions::FIELDS.to_vec())?;
+    module.add("IMPACT", impacts::FIELDS.to_vec())?;
+    module.add("DERIVATIVE", impacts::DERIVATIVES.to_vec())?;
+    module.add("CHARACTERISTICS", impacts::CHARACTERISTICS.map(|name| (name, 1_usize)).to_vec())?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("PATHS", Path::ALL.iter().map(Path::to_string).collect::<Vec<_>>())?;
     Ok(())
 }

@@ -3,15 +3,15 @@
 use std::ops::Range;
 
 use hodograph::{
-    CollisionError, CollisionOutcome, ComponentKind, Contacts as _, Mechanism as _, ParameterError, State,
-    StateError, Surface,
+    Budgeted, CollisionError, CollisionOutcome, ComponentKind, ParameterError, State, StateError,
 };
 use hodograph_generator::interpret::{Arguments, Prepared};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph_generator::program::Quantity;
 use hodograph_interpreter::columns::{Column, Table, over_rows};
 use pyo3::prelude::*;
 
-use crate::errors;
+use crate::machine::Machine;
+use crate::{errors, numeric};
 
 /// Parameters of every row.
 #[derive(Clone)]
@@ -32,94 +32,142 @@ impl Machines {
     pub fn row(&self, row: usize) -> &[f64] {
         self.numbers.get(row * self.width..(row + 1) * self.width).unwrap_or(&[])
     }
+}
 
-    /// Calls `with` for these rows, each with the mechanism of its parameters and whether that is another one
-    /// than that of the row before.
-    fn each(
-        &self,
-        mechanism: &InterpretedMechanism,
-        range: Range<usize>,
-        mut with: impl FnMut(usize, Result<&InterpretedMechanism, &ParameterError>, bool),
-    ) {
-        let mut machine = mechanism.clone();
-        let mut known: Option<(usize, Result<(), ParameterError>)> = None;
-        for row in range {
-            let bits = |row: usize| self.row(row).iter().map(|number| number.to_bits());
+/// Calls `with` for these rows, each with the mechanism of its parameters, if they have some of their own, and whether that
+/// is another one than that of the row before.
+fn each(
+    (machine, machines): (&Machine, Option<&Machines>),
+    range: Range<usize>,
+    mut with: impl FnMut(usize, Result<&Machine, &ParameterError>, bool),
+) {
+    // Of its own: what was computed of the last state is kept in it.
+    let mut machine = machine.clone();
+    let mut known: Option<(usize, Result<(), ParameterError>)> = None;
+    for row in range {
+        let mut new = known.is_none();
+        if let Some(machines) = machines {
+            let bits = |row: usize| machines.row(row).iter().map(|number| number.to_bits());
             let same = known.as_ref().is_some_and(|(other, _)| bits(*other).eq(bits(row)));
-            if !same {
-                known = Some((row, machine.set_parameter_values(self.row(row))));
+            new = !same;
+            if new {
+                known = Some((row, machine.set_parameters(machines.row(row))));
             }
-            match &known {
-                Some((_, Err(error))) => with(row, Err(error), !same),
-                _ => with(row, Ok(&machine), !same),
-            }
+        } else {
+            known.get_or_insert((row, Ok(())));
+        }
+        match &known {
+            Some((_, Err(error))) => with(row, Err(error), new),
+            _ => with(row, Ok(&machine), new),
         }
     }
+}
 
-    /// Evaluates a routine at all rows, each with its parameters: the numbers by rows (of a row without
-    /// answer they are not numbers), and the rows without answer.
-    pub fn evaluate(
-        &self,
-        mechanism: &InterpretedMechanism,
-        routine: &Prepared,
-        table: &Table<'_>,
-    ) -> (Vec<f64>, Vec<(usize, Refused)>) {
-        let parts = over_rows(self.rows, |range| {
-            let mut routine = routine.clone();
-            let mut numbers = vec![f64::NAN; range.len() * routine.len()];
-            let mut refused = Vec::new();
-            let start = range.start;
-            self.each(mechanism, range, |row, machine, new| {
-                let machine = match machine {
-                    Ok(machine) => machine,
-                    Err(error) => return refused.push((row, Refused::Parameters(error.clone()))),
-                };
-                if new {
-                    routine.refresh(machine.constants());
-                }
-                let state = OfRow::new(table, row);
-                let places = numbers.get_mut((row - start) * routine.len()..).unwrap_or(&mut []);
-                let outcome = routine.evaluate(&state.arguments(), |index, number| {
-                    if let Some(place) = places.get_mut(index) {
-                        *place = number;
-                    }
-                });
-                if let Err(failed) = outcome {
-                    refused.push((row, Refused::State(machine.state_error(failed))));
-                }
-            });
-            (numbers, refused)
-        });
-        let mut all = (Vec::new(), Vec::new());
-        for (numbers, refused) in parts {
-            all.0.extend(numbers);
-            all.1.extend(refused);
-        }
-        all
-    }
+/// What is evaluated at many states, each by a mechanism of its own.
+pub enum Asked<'a> {
+    /// a routine of the derived equations
+    Routine(&'a Prepared),
+    /// a quantity of a model without these, of so many numbers
+    Quantity(Quantity, usize),
+}
 
-    /// Solves the collisions of these rows of a contact; `with` receives the row, and the answer with the
-    /// speeds after it.
-    pub fn collide(
-        &self,
-        mechanism: &InterpretedMechanism,
-        contact: usize,
-        (table, range): (&Table<'_>, Range<usize>),
-        surface: impl Fn(usize) -> Surface<f64>,
-        mut with: impl FnMut(usize, Result<(CollisionOutcome<f64>, &[f64]), RowError>),
-    ) {
-        let mut speeds = vec![0.0; mechanism.count(ComponentKind::Speed)];
-        self.each(mechanism, range, |row, machine, _| {
+/// Evaluates what is asked at all rows: the numbers by rows (of a row without answer they are not numbers), and the rows
+/// without answer.
+pub fn evaluate(
+    of: (&Machine, Option<&Machines>),
+    asked: &Asked<'_>,
+    table: &Table<'_>,
+) -> (Vec<f64>, Vec<(usize, Refused)>) {
+    let width = match asked {
+        Asked::Routine(routine) => routine.len(),
+        Asked::Quantity(_, width) => *width,
+    };
+    let parts = over_rows(table.rows, |range| {
+        let mut routine = match asked {
+            Asked::Routine(routine) => Some((*routine).clone()),
+            Asked::Quantity(..) => None,
+        };
+        let mut numbers = vec![f64::NAN; range.len() * width];
+        let mut refused = Vec::new();
+        let start = range.start;
+        each(of, range, |row, machine, new| {
+            let machine = match machine {
+                Ok(machine) => machine,
+                Err(error) => return refused.push((row, Refused::Parameters(*error))),
+            };
             let state = OfRow::new(table, row);
-            match machine {
-                Err(error) => with(row, Err(RowError::Parameters(error.clone()))),
-                Ok(machine) => match machine.collide(contact, &state.state(), &surface(row), &mut speeds) {
-                    Ok(outcome) => with(row, Ok((outcome, &speeds))),
-                    Err(error) => with(row, Err(RowError::Collision(error))),
-                },
+            let places = numbers.get_mut((row - start) * width..).unwrap_or(&mut []);
+            let outcome = match (&mut routine, machine, asked) {
+                (Some(routine), Machine::Derived(derived), _) => {
+                    if new {
+                        routine.refresh(derived.constants());
+                    }
+                    let with = |index: usize, number: f64| {
+                        if let Some(place) = places.get_mut(index) {
+                            *place = number;
+                        }
+                    };
+                    routine.evaluate(&state.arguments(), with).map_err(|failed| derived.state_error(failed))
+                }
+                (_, _, Asked::Quantity(quantity, _)) => {
+                    let [.., accelerations, _] = &state.lists;
+                    let places = places.get_mut(..width).unwrap_or(&mut []);
+                    numeric::evaluate(machine.contacts(), *quantity, &state.state(), accelerations, places)
+                }
+                _ => Err(StateError::Undefined { what: "quantity" }),
+            };
+            if let Err(error) = outcome {
+                refused.push((row, Refused::State(error)));
             }
         });
+        (numbers, refused)
+    });
+    let mut all = (Vec::new(), Vec::new());
+    for (numbers, refused) in parts {
+        all.0.extend(numbers);
+        all.1.extend(refused);
     }
+    all
+}
+
+/// Solves the collisions of these rows of a contact, one by one; `with` receives the row, and the answer with the speeds
+/// after it.
+pub fn collide(
+    of: (&Machine, Option<&Machines>),
+    contact: usize,
+    (table, range): (&Table<'_>, Range<usize>),
+    surface: impl Fn(usize) -> Budgeted<f64>,
+    mut with: impl FnMut(usize, Result<(CollisionOutcome<f64>, &[f64]), RowError>),
+) {
+    let mut speeds = vec![0.0; of.0.count(ComponentKind::Speed)];
+    each(of, range, |row, machine, _| {
+        let state = OfRow::new(table, row);
+        match machine {
+            Err(error) => with(row, Err(RowError::Parameters(*error))),
+            Ok(machine) => {
+                let found = machine.contacts().collide_with_budget(
+                    contact,
+                    &state.state(),
+                    &surface(row),
+                    &mut speeds,
+                );
+                with(row, found.map(|outcome| (outcome, &speeds[..])).map_err(RowError::Collision));
+            }
+        }
+    });
+}
+
+/// Calls `with` for these rows with their machines and states.
+pub fn each_state(
+    of: (&Machine, Option<&Machines>),
+    (table, range): (&Table<'_>, Range<usize>),
+    mut with: impl FnMut(usize, Result<(&Machine, &State<'_>), &ParameterError>),
+) {
+    each(of, range, |row, machine, _| {
+        let row_state = OfRow::new(table, row);
+        let state = row_state.state();
+        with(row, machine.map(|machine| (machine, &state)));
+    });
 }
 
 /// Why a collision of a row has no outcome.

@@ -3,11 +3,11 @@
 use std::sync::PoisonError;
 use std::time::Duration;
 
-use hodograph::{ComponentKind, Mechanism as _, State, StateError};
-use hodograph_interpreter::InterpretedMechanism;
-use hodograph_interpreter::motion as defaults;
+use hodograph::{ComponentKind, Contacts, State, StateError};
+use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
-    Batch, Case, ErrorKind, Options, Outcome, SimulationError, Watch, digest, simulate_many,
+    Batch, Case, ContactLaw, ErrorKind, Event, EventFunction, Options, Outcome, SimulationError, StopAt,
+    Watch, digest, simulate_many,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 use crate::arguments::{Rows, array, column, common};
 use crate::errors;
 use crate::laws::Raised;
+use crate::machine::Machine;
 use crate::machines::Machines;
 use crate::motion::{Choices, given, own, warn_of_no_gap};
 use crate::states::States;
@@ -31,11 +32,11 @@ const LOOK: Duration = Duration::from_millis(50);
 #[allow(clippy::too_many_arguments)]
 pub fn simulate<'py>(
     py: Python<'py>,
-    (mechanism, machines): (&InterpretedMechanism, Option<&Machines>),
+    (machine, machines): (&Machine, Option<&Machines>),
     states: &States<'py>,
     until: f64,
     columns: &Columns<'py>,
-    choices: &Choices,
+    choices: Choices,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -62,76 +63,42 @@ pub fn simulate<'py>(
         return Err(errors::argument(py, "tolerance", "bad_option", &message));
     }
     let raised = Raised::default();
-    let (own, laws) = own(py, mechanism, choices, &raised)?;
-    let all = given(py, &choices.surface)?;
-    let max_step = choices.max_step.unwrap_or(defaults::greatest_step(mechanism.program(), false));
-    let of = |rows: &Rows<'_>| (rows.slice().to_vec(), rows.width, usize::from(rows.rows.is_some()));
-    let (q, u, inputs) = (of(&states.q), of(&states.u), of(&states.inputs));
-    let time = states.time.as_ref().map(of);
-    let numbers: Vec<(&str, Vec<f64>, usize)> = given_columns
-        .iter()
-        .map(|(name, rows)| (*name, rows.slice().to_vec(), usize::from(rows.rows.is_some())))
+    let contacts = machine.contacts();
+    let ends = choices.ends(py)?;
+    let (own, laws) = own(py, contacts, &choices, &raised)?;
+    let never_closed: Vec<usize> = (0..machine.count(ComponentKind::Contact))
+        .filter(|&contact| machine.model().contacts.get(contact).is_some_and(|contact| contact.gap.is_none()))
         .collect();
-    let row_of = |(numbers, width, many): &(Vec<f64>, usize, usize), row: usize| {
-        numbers.get(row * many * width..(row * many + 1) * width).unwrap_or(&[]).to_vec()
-    };
-    let never_closed: Vec<usize> = (0..mechanism.count(ComponentKind::Contact))
-        .filter(|&contact| {
-            mechanism.model().contacts.get(contact).is_some_and(|contact| contact.gap.is_none())
-        })
-        .collect();
-    warn_of_no_gap(py, mechanism, &never_closed)?;
-    let not_finite = states.not_finite();
-    let case = |row: usize| -> Result<Case<Box<InterpretedMechanism>>, SimulationError> {
-        let start = time.as_ref().map_or(0.0, |time| row_of(time, row)[0]);
-        let wrong = |message: String| SimulationError {
-            time: start,
-            contact: None,
-            kind: ErrorKind::BadOption(message),
-        };
-        if not_finite.binary_search(&row).is_ok() {
-            let kind = ErrorKind::State(StateError::NotFinite);
-            return Err(SimulationError { time: start, contact: None, kind });
-        }
-        let number = |name: &str| {
-            let found = numbers.iter().find(|(other, ..)| *other == name);
-            found.and_then(|(_, numbers, many)| numbers.get(row * many).copied())
-        };
-        let mut machine = mechanism.clone();
-        if let Some(machines) = machines {
-            machine.set_parameter_values(machines.row(row)).map_err(|error| wrong(error.to_string()))?;
-        }
-        let (coordinates, speeds, inputs) = (row_of(&q, row), row_of(&u, row), row_of(&inputs, row));
-        let state = State { time: start, coordinates: &coordinates, speeds: &speeds, inputs: &inputs };
-        let mut all = all;
-        all.mu = number("mu").or(all.mu);
-        all.e = number("e").or(all.e);
-        let all = all.check().map_err(|error| wrong(error.to_string()))?;
-        let mut options = Options {
-            relative_tolerance: tolerance,
-            absolute_tolerance: tolerance,
-            max_step,
-            ..Options::default()
-        };
-        options.surfaces = defaults::surfaces(&machine, &state, all, &own)
-            .map_err(|error| wrong(format!("{error}: give mu, e and law, or `surfaces`")))?
-            .of_contacts;
-        options.laws = laws.clone();
-        for (contact, law) in &mut options.laws {
-            if own.iter().all(|(other, _)| other != contact) {
-                law.mu_static = number("mu_static").or(law.mu_static);
-                law.mu_impact = number("mu_impact").or(law.mu_impact);
-                law.rolling = number("rolling").or(law.rolling);
-                law.spinning = number("spinning").or(law.spinning);
-            }
-        }
-        Ok(Case { mechanism: Box::new(machine), time: start, coordinates, speeds, inputs, options, until })
+    warn_of_no_gap(py, machine, &never_closed)?;
+    let plan = Plan {
+        machines,
+        state: [Table::of(&states.q), Table::of(&states.u), Table::of(&states.inputs)],
+        time: states.time.as_ref().map(Table::of),
+        numbers: given_columns.iter().map(|(name, rows)| (*name, Table::of(rows))).collect(),
+        not_finite: states.not_finite(),
+        all: given(py, &choices.surface)?,
+        own,
+        laws,
+        tolerance,
+        max_step: choices.max_step.unwrap_or(machine.greatest_step(false)),
+        events: choices.functions(&raised),
+        until,
     };
     let watch = Watch::new();
     let mut interrupted = None;
+    let stop = |_: usize, event: &Event| ends.stops(&event.kind);
+    let stop: StopAt<'_> = &stop;
+    let batch = Batch { threads, watch: Some(&watch), stop: Some(stop) };
     let outcomes = py.detach(|| {
         std::thread::scope(|scope| {
-            let batch = scope.spawn(|| simulate_many(rows, case, &Batch { threads, watch: Some(&watch) }));
+            let batch = scope.spawn(|| match machine {
+                Machine::Derived(mechanism) => {
+                    simulate_many(rows, |row| plan.case(mechanism.as_ref(), row), &batch)
+                }
+                Machine::Numeric { mechanism, .. } => {
+                    simulate_many(rows, |row| plan.case(mechanism.as_ref(), row), &batch)
+                }
+            });
             while !batch.is_finished() {
                 std::thread::sleep(LOOK);
                 let told: PyResult<()> = Python::attach(|py| {
@@ -155,13 +122,103 @@ pub fn simulate<'py>(
         return Err(error);
     }
     let outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
-    tell(py, mechanism, &outcomes)
+    tell(py, contacts, &outcomes)
 }
+
+/// Numbers of rows, for other threads; one row serves all.
+struct Table {
+    numbers: Vec<f64>,
+    width: usize,
+    many: bool,
+}
+
+impl Table {
+    fn of(rows: &Rows<'_>) -> Self {
+        Table { numbers: rows.slice().to_vec(), width: rows.width, many: rows.rows.is_some() }
+    }
+
+    fn row(&self, row: usize) -> &[f64] {
+        let row = if self.many { row } else { 0 };
+        self.numbers.get(row * self.width..(row + 1) * self.width).unwrap_or(&[])
+    }
+}
+
+/// What the rows are.
+struct Plan<'a> {
+    machines: Option<&'a Machines>,
+    /// coordinates, speeds, inputs
+    state: [Table; 3],
+    time: Option<Table>,
+    /// numbers of surfaces that differ from row to row, by name
+    numbers: Vec<(&'a str, Table)>,
+    not_finite: Vec<usize>,
+    all: GivenSurface,
+    own: Vec<(usize, GivenSurface)>,
+    laws: Vec<(usize, ContactLaw)>,
+    tolerance: f64,
+    max_step: f64,
+    events: Vec<EventFunction>,
+    until: f64,
+}
+
+impl Plan<'_> {
+    fn case<M: Contacts<f64> + Clone>(
+        &self,
+        mechanism: &M,
+        row: usize,
+    ) -> Result<Case<Box<M>>, SimulationError> {
+        let first = |table: &Table| table.row(row).first().copied();
+        let time = self.time.as_ref().and_then(first).unwrap_or(0.0);
+        let failed = |kind| SimulationError { time, contact: None, kind };
+        if self.not_finite.binary_search(&row).is_ok() {
+            return Err(failed(ErrorKind::State(StateError::NotFinite)));
+        }
+        let number = |name: &str| {
+            let found = self.numbers.iter().find(|(other, _)| *other == name);
+            found.and_then(|(_, table)| first(table))
+        };
+        let mut machine = mechanism.clone();
+        if let Some(machines) = self.machines {
+            machine.set_parameter_values(machines.row(row)).map_err(|error| failed(error.into()))?;
+        }
+        let [coordinates, speeds, inputs] = self.state.each_ref().map(|table| table.row(row).to_vec());
+        let state = State { time, coordinates: &coordinates, speeds: &speeds, inputs: &inputs };
+        let given = GivenSurface { mu: number("mu"), e: number("e"), law: None };
+        let all = given.or(self.all).check().map_err(|error| failed(error.into()))?;
+        let mut options = Options {
+            relative_tolerance: self.tolerance,
+            absolute_tolerance: self.tolerance,
+            max_step: self.max_step,
+            events: self.events.clone(),
+            ..Options::default()
+        };
+        options.surfaces = defaults::surfaces(&machine, &state, all, &self.own)
+            .map_err(|error| {
+                let message = format!("{error}: give mu, e and law, or `surfaces`");
+                failed(ErrorKind::Argument { cause: error.cause(), message })
+            })?
+            .of_contacts;
+        options.laws.clone_from(&self.laws);
+        for (contact, law) in &mut options.laws {
+            if self.own.iter().all(|(other, _)| other != contact) {
+                law.mu_static = number("mu_static").or(law.mu_static);
+                law.mu_impact = number("mu_impact").or(law.mu_impact);
+                law.rolling = number("rolling").or(law.rolling);
+                law.spinning = number("spinning").or(law.spinning);
+            }
+        }
+        let until = self.until;
+        Ok(Case { mechanism: Box::new(machine), time, coordinates, speeds, inputs, options, until })
+    }
+}
+
+/// What is taken of an outcome.
+type Of<R> = fn(&Outcome) -> R;
 
 /// The outcomes by columns.
 fn tell<'py>(
     py: Python<'py>,
-    mechanism: &InterpretedMechanism,
+    mechanism: &dyn Contacts<f64>,
     outcomes: &[Outcome],
 ) -> PyResult<Bound<'py, PyDict>> {
     let found = PyDict::new(py);
@@ -178,7 +235,7 @@ fn tell<'py>(
     };
     found.set_item("q", array(py, rows, &[n], wide(n, |outcome| &outcome.coordinates))?)?;
     found.set_item("u", array(py, rows, &[p], wide(p, |outcome| &outcome.speeds))?)?;
-    let numbers: [(&str, fn(&Outcome) -> f64); 7] = [
+    let numbers: [(&str, Of<f64>); 7] = [
         ("time", |outcome| outcome.time),
         ("rest", |outcome| outcome.rest.unwrap_or(f64::NAN)),
         ("kinetic", |outcome| outcome.energy.kinetic),
@@ -190,7 +247,7 @@ fn tell<'py>(
     for (name, of) in numbers {
         found.set_item(name, array(py, rows, &[], outcomes.iter().map(of).collect())?)?;
     }
-    let counts: [(&str, fn(&Outcome) -> usize); 2] =
+    let counts: [(&str, Of<usize>); 2] =
         [("collisions", |outcome| outcome.collisions), ("events", |outcome| outcome.events)];
     for (name, of) in counts {
         let counts: Vec<i64> = outcomes.iter().map(|outcome| of(outcome) as i64).collect();

@@ -5,7 +5,6 @@ use std::path::Path;
 use hodograph_generator::check;
 use hodograph_generator::diagnostics::Severity;
 use hodograph_generator::files;
-use hodograph_generator::numeric;
 use hodograph_generator::source::Source;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -64,42 +63,4 @@ pub fn mistakes(py: Python<'_>, checked: &check::Checked, source: &Source) -> Py
     let attach =
         || -> PyResult<()> { error.value(py).setattr("_diagnostics", diagnostics(py, checked, source)?) };
     attach().err().unwrap_or(error)
-}
-
-/// Mass matrix, forcing and rates by the numeric evaluator, which needs no derivation.
-#[pyfunction]
-#[pyo3(name = "numeric")]
-pub fn evaluate_numerically<'py>(
-    py: Python<'py>,
-    model: &str,
-    q: Vec<f64>,
-    u: Vec<f64>,
-    inputs: Vec<f64>,
-    time: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let source = source(model);
-    let checked = check::check(&source);
-    let Some(mechanism) = &checked.mechanism else { return Err(mistakes(py, &checked, &source)) };
-    let mut state = numeric::State::of(mechanism);
-    let given = [
-        (&mut state.coordinates, q, "q"),
-        (&mut state.speeds, u, "u"),
-        (&mut state.inputs, inputs, "inputs"),
-    ];
-    for (list, given, name) in given {
-        if given.len() != list.len() {
-            let message = format!("`{name}` has {} numbers: expected {}", given.len(), list.len());
-            return Err(errors::argument(py, name, "wrong_shape", &message));
-        }
-        *list = given;
-    }
-    state.time = time;
-    let found = numeric::evaluate(mechanism, &state)
-        .map_err(|error| errors::error(py, "StateError", &error.to_string(), "singular_state", None, None))?;
-    let all = PyDict::new(py);
-    all.set_item("mass_matrix", found.mass_matrix)?;
-    all.set_item("forcing", found.forcing)?;
-    all.set_item("coordinate_rates", found.rates)?;
-    all.set_item("kinetic_energy", found.kinetic_energy)?;
-    Ok(all)
 }

@@ -1,7 +1,6 @@
 //! The states that a call is given: one, or rows of them.
 
-use hodograph::{ComponentKind, Mechanism as _, StateError};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph::{ComponentKind, Contacts, State, StateError};
 use hodograph_interpreter::columns::{Column, Table};
 use pyo3::prelude::*;
 
@@ -20,6 +19,16 @@ pub struct States<'py> {
 }
 
 impl States<'_> {
+    /// The state, where it is one.
+    pub fn one(&self) -> State<'_> {
+        State {
+            time: self.time.as_ref().map_or(0.0, |time| time.slice()[0]),
+            coordinates: self.q.slice(),
+            speeds: self.u.slice(),
+            inputs: self.inputs.slice(),
+        }
+    }
+
     /// The columns of the rows.
     pub fn table(&self) -> Table<'_> {
         fn columns<'a>(rows: &'a Option<Rows<'_>>) -> Vec<Column<'a>> {
@@ -53,7 +62,7 @@ impl States<'_> {
     pub fn error(
         &self,
         py: Python<'_>,
-        mechanism: &InterpretedMechanism,
+        mechanism: &dyn Contacts<f64>,
         failure: &StateError,
         row: usize,
         count: usize,
@@ -78,16 +87,16 @@ impl States<'_> {
         let mut place = self.rows.map(|_| format!("row {row}"));
         let time = table.time.as_ref().map(|time| time.get(row)).filter(|time| !time.is_finite());
         if let Some(value) = time {
-            message = format!("`time` is {value}: expected a finite number");
+            message = format!("`time` is {value}: it must be finite");
             number = Some(value);
             place = Some(place.map_or("time".to_owned(), |row| format!("{row}, time")));
         } else if let Some((kind, argument, index, value)) = at_fault {
             let name = mechanism.component(kind, index).map_or(String::new(), |c| c.name.to_owned());
-            message = format!("`{argument}` holds {value} for {name}: expected a finite number");
+            message = format!("`{argument}` holds {value} for {name}: it must be finite");
             number = Some(value);
             place = Some(place.map_or(name.clone(), |row| format!("{row}, {name}")));
         } else if let Some((name, value)) = other {
-            message = format!("`{name}` holds {value}: expected a finite number");
+            message = format!("`{name}` holds {value}: it must be finite");
             number = Some(value);
             place = Some(place.map_or(name.to_owned(), |row| format!("{row}, {name}")));
         }

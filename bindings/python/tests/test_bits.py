@@ -69,3 +69,14 @@ def test_bits_are_those_of_rust(model):
                 same(hits.speeds[row], of[f"collide{index}"][row])
             else:
                 assert hits.kind[row] != "" and np.isnan(hits.speeds[row]).all()
+
+
+def test_twenty_states_have_the_bits_of_every_door():
+    table = np.loadtxt(ROOT / "tests/data/doors/planar_double_pendulum.csv", delimiter=",", skiprows=1)
+    assert table.shape == (20, 7)
+    m = hodograph.load(ROOT / "models/planar_double_pendulum.mech")
+    q, u = table[:, :2], table[:, 2:4]
+    same(m.accelerations(q, u), table[:, 4:6])
+    same(m.kinetic_energy(q, u), table[:, 6])
+    for row in table:
+        same(m.accelerations(row[:2], row[2:4]), row[4:6])

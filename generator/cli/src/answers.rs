@@ -1,4 +1,4 @@
-//! How answers are written: as tables for a person, as JSON for a program.
+//! Writes the answer of a command: as tables for a person, as JSON for a program.
 
 use std::io::IsTerminal;
 
@@ -14,7 +14,7 @@ pub enum Form {
     Json,
 }
 
-/// The form that is asked for.
+/// The option for the form of an answer.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct FormArgument {
     /// how the answer is written [default: tables at a terminal, else JSON]
@@ -22,35 +22,35 @@ pub struct FormArgument {
     format: Option<Form>,
 }
 
-/// Whether a person reads standard output.
-pub fn is_read() -> bool {
+/// Whether standard output is a terminal.
+pub fn is_terminal() -> bool {
     std::io::stdout().is_terminal()
 }
 
 impl FormArgument {
-    /// Writes an answer in its form; so is the error: in JSON as an object on standard output, else as text
-    /// on standard error.
+    /// Writes an answer in its form. An error is written in JSON as an object on standard output, in a table
+    /// as text on standard error.
     ///
     /// # Errors
     ///
-    /// That of `answer`, and those of writing.
+    /// The error of `answer`, or one of writing.
     pub fn write<T: serde::Serialize>(
         &self,
         answer: impl FnOnce() -> Outcome<T>,
         table: impl FnOnce(&T) -> String,
     ) -> Outcome {
-        let form = self.format.unwrap_or(if is_read() { Form::Table } else { Form::Json });
+        let form = self.format.unwrap_or(if is_terminal() { Form::Table } else { Form::Json });
         match (form, answer()) {
             (Form::Json, answer) => output::json(&answer?),
             (Form::Table, Ok(answer)) => output::text(&output::visible(&table(&answer))),
-            (Form::Table, Err(stop)) => Err(stop.told()),
+            (Form::Table, Err(stop)) => Err(stop.on_standard_error()),
         }
     }
 }
 
 impl Stop {
-    /// The same, told on standard error in any case.
-    pub fn told(self) -> Self {
+    /// The same error, but reported on standard error in any form.
+    pub fn on_standard_error(self) -> Self {
         match self {
             Stop::Object(failure) => Stop::Fault(failure.to_string()),
             other => other,

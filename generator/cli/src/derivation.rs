@@ -28,12 +28,12 @@ pub struct Limits {
     pub time_limit: u64,
 }
 
-/// Stack of work that walks expressions.
+/// The stack size of threads that traverse expressions recursively.
 const STACK: usize = 256 << 20;
 
 impl Limits {
-    /// Does work for at most so long; what is not done by then ends with the process. `doing` is what
-    /// messages call it.
+    /// Runs `work` for at most the time limit; a thread that takes longer ends with the process. `doing`
+    /// describes the work in messages.
     ///
     /// # Errors
     ///
@@ -52,7 +52,7 @@ impl Limits {
             .spawn(move || drop(sender.send((work(), started.elapsed()))))
             .map_err(|error| Stop::Fault(format!("cannot start a thread: {error}")))?;
         match receiver.recv_timeout(limit) {
-            // a busy machine may wake this thread only after an answer that came too late
+            // on a busy machine this thread may wake up after an answer that came too late
             Ok((_, took)) if took > limit => Err(Stop::Fault(late)),
             Ok((answer, _)) => Ok(answer),
             Err(RecvTimeoutError::Timeout) => Err(Stop::Fault(late)),
@@ -63,11 +63,12 @@ impl Limits {
     }
 }
 
-/// A model with its equations: the derivation beside it if that is fresh, else one made now and not kept.
+/// A model with its equations: the stored derivation if it is fresh, else one that is derived now and not
+/// stored.
 ///
 /// # Errors
 ///
-/// As [`model::load`] and [`derive()`].
+/// Those of [`model::load`] and [`derive()`].
 pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
     let model = model::load(path)?;
     let kept = place::beside(path);
@@ -85,15 +86,15 @@ pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
     Ok(Machine { mechanism: model.mechanism, program })
 }
 
-/// Derives a model: the program, and the text in which it is kept.
+/// Derives a model and returns the program, and the text of its derivation file.
 ///
-/// The algebra engine prints on standard output and can end the process that uses it, so it runs in a process
-/// of its own. Only one at a time may run on behalf of a user; the generator waits, and says so, while
-/// another does.
+/// The algebra engine prints to standard output and may end the process that uses it, so it runs in a process
+/// of its own. Only one such process at a time may run on behalf of a user; the generator waits for others,
+/// and says so.
 ///
 /// # Errors
 ///
-/// [`Stop::Reported`] where the child process has said why; [`Stop::Fault`].
+/// [`Stop::Reported`] if the child process has reported the mistake itself, else [`Stop::Fault`].
 pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
     let answer = run(model, limits, false)?;
     let derived = artifact::decode(&answer)
@@ -101,20 +102,20 @@ pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
     Ok((derived.program, answer))
 }
 
-/// Derives a model to see what each pass does to it: a line per pass.
+/// Derives a model and returns a line for each pass with the number of operations after it.
 ///
 /// # Errors
 ///
-/// As [`derive()`].
+/// Those of [`derive()`].
 pub fn trace(model: &Model, limits: &Limits) -> Outcome<String> {
     run(model, limits, true)
 }
 
-/// What the process that derives writes before its answer: what stands above it is the engine's.
+/// The line that the child process writes before its answer; the text above it comes from the engine.
 pub const ANSWER: &str = "\nthe answer of hodograph derive-worker:\n";
 
-/// Runs the process that derives: it reads the model, its parts expanded, from standard input, and writes its answer at the end of
-/// standard output. So there is no file that could be left.
+/// Runs the child process. It reads the model, with its parts expanded, from standard input and writes its
+/// answer at the end of standard output. So no temporary file is needed.
 fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
     if !cfg!(feature = "derive") {
         return Err(Stop::Fault(
@@ -135,7 +136,7 @@ fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
         .spawn()
         .map_err(|error| fault("cannot start the process that derives", error))?;
     if let Some(mut input) = child.stdin.take() {
-        // It reads all of it before anything else; if it ends before that, its exit code says so.
+        // The child reads all of its input first; if it ends early, its exit code is reported below.
         let _ = input.write_all(plain(&model.source).as_bytes());
     }
     let output = child.stdout.take();
@@ -162,7 +163,7 @@ fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
     }
 }
 
-/// Waits for the child; shows that it works after a second, and ends it at the limit.
+/// Waits for the child; shows progress after a second, and ends the child at the time limit.
 fn wait(mut child: Child, name: &str, limits: &Limits) -> Outcome<ExitStatus> {
     let start = Instant::now();
     let mut progress: Option<ProgressBar> = None;
@@ -205,7 +206,7 @@ fn show(name: &str) -> ProgressBar {
     style.map_or(progress.clone(), |style| progress.with_style(style))
 }
 
-/// Writes a derivation where it is kept, whole or not at all.
+/// Writes a derivation file, completely or not at all.
 ///
 /// # Errors
 ///

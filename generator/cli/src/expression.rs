@@ -1,14 +1,14 @@
-//! Expressions of numbers, and of time, in the syntax of the model language.
+//! Expressions of numbers, and of functions of time, in the syntax of the model language.
 
 use std::sync::Arc;
 
 use hodograph_generator::syntax::tree::{Expr, ExprKind};
 use hodograph_generator::syntax::{lexer, parse};
 
-/// Longest expression, in characters.
-const MOST: usize = 4096;
+/// Greatest length of an expression, in characters.
+const MAX_LENGTH: usize = 4096;
 
-/// A step of the calculation.
+/// A node of an expression.
 #[derive(Clone, Debug)]
 enum Node {
     Number(f64),
@@ -25,7 +25,7 @@ enum Node {
 ///
 /// # Errors
 ///
-/// What cannot be read, in a sentence.
+/// The mistake, in a sentence.
 pub fn of_time(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String> {
     let node = read(text)?;
     Ok(Arc::new(move |t| value(&node, t)))
@@ -35,26 +35,31 @@ pub fn of_time(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, Stri
 ///
 /// # Errors
 ///
-/// What cannot be read, or is not finite, in a sentence.
+/// The expression cannot be read, or its value is not finite; in a sentence.
 pub fn number(text: &str) -> Result<f64, String> {
+    let not_finite = |number: f64| Err(format!("it is {number}: it must be finite"));
+    // What other programs write for numbers that are not finite is no expression.
+    if let Some(number) = text.trim().parse().ok().filter(|number: &f64| !number.is_finite()) {
+        return not_finite(number);
+    }
     let node = read(text)?;
-    // What does not depend on time is the same at all times.
+    // An expression that does not depend on time has the same value at all times.
     let [first, other] = [0.0, 0.7].map(|t| value(&node, t));
     match first {
         _ if first.to_bits() != other.to_bits() && !first.is_nan() => {
             Err("it depends on the time t: give a number".to_owned())
         }
         number if number.is_finite() => Ok(number),
-        number => Err(format!("it is {number}: give a finite number")),
+        number => not_finite(number),
     }
 }
 
 fn read(text: &str) -> Result<Node, String> {
-    if text.len() > MOST {
-        return Err(format!("the expression is longer than {MOST} characters"));
+    if text.len() > MAX_LENGTH {
+        return Err(format!("the expression is longer than {MAX_LENGTH} characters"));
     }
     if let Some(strange) = text.chars().find(|&c| matches!(c, ';' | '{' | '}' | '=')) {
-        return Err(format!("`{strange}` cannot stand in an expression of the time t"));
+        return Err(format!("`{strange}` is not allowed in an expression of the time t"));
     }
     if text.trim().is_empty() {
         return Err("a number is missing".to_owned());
@@ -72,7 +77,7 @@ fn read(text: &str) -> Result<Node, String> {
     let model = format!("mechanism Input;\ndefinitions {{ x = {text}; }}\n");
     let (tree, mistakes) = parse(&lexer::tokens(&model, usize::MAX));
     if let Some(mistake) = mistakes.first() {
-        // The end of the text is the semicolon behind it.
+        // The text ends with the semicolon that was added after it.
         return Err(format!("it cannot be read: {}", mistake.message.replace("found `;`", "found the end")));
     }
     let [definition] = &tree.definitions[..] else {
@@ -86,8 +91,10 @@ fn node(expression: &Expr) -> Result<Node, String> {
         terms.iter().map(|(inverse, term)| Ok((*inverse, node(term)?))).collect::<Result<Vec<_>, String>>()
     };
     Ok(match &expression.kind {
-        ExprKind::Number(text) => Node::Number(text.parse().map_err(|_| format!("`{text}` is no number"))?),
-        // Models call it `time`.
+        ExprKind::Number(text) => {
+            Node::Number(text.parse().map_err(|_| format!("`{text}` is not a number"))?)
+        }
+        // Models use the name `time`.
         ExprKind::Name(name) if name == "t" || name == "time" => Node::Time,
         ExprKind::Name(name) if name == "pi" => Node::Number(std::f64::consts::PI),
         ExprKind::Name(name) => {
@@ -98,7 +105,7 @@ fn node(expression: &Expr) -> Result<Node, String> {
         ExprKind::Power(base, exponent) => Node::Power(Box::new(node(base)?), Box::new(node(exponent)?)),
         ExprKind::Neg(inner) => Node::Neg(Box::new(node(inner)?)),
         ExprKind::Call(name, arguments) => call(&name.text, arguments)?,
-        _ => return Err("only numbers, t, pi, + - * / ^ and functions can stand in it".to_owned()),
+        _ => return Err("only numbers, t, pi, + - * / ^ and functions are allowed".to_owned()),
     })
 }
 
@@ -117,7 +124,7 @@ fn call(name: &str, arguments: &[Expr]) -> Result<Node, String> {
         "log" | "ln" => Some(f64::ln),
         "sqrt" => Some(f64::sqrt),
         "abs" => Some(f64::abs),
-        // As in models: 1 at zero.
+        // as in models: 1 at zero
         "sign" => Some(|x| match x {
             x if x.is_nan() => x,
             x if x < 0.0 => -1.0,
@@ -126,7 +133,7 @@ fn call(name: &str, arguments: &[Expr]) -> Result<Node, String> {
         _ => None,
     };
     let two: Option<fn(f64, f64) -> f64> = match name {
-        // What is no number stays so: the simulation refuses it.
+        // NaN propagates; the simulation refuses it
         "min" => Some(|a, b| if a.is_nan() || a < b { a } else { b }),
         "max" => Some(|a, b| if a.is_nan() || a > b { a } else { b }),
         "atan2" => Some(f64::atan2),

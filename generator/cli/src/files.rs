@@ -22,11 +22,11 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Where its derivation is kept.
+    /// The path of its derivation.
     ///
     /// # Errors
     ///
-    /// An inline model outside of any package.
+    /// The model is inline and belongs to no package.
     pub fn derivation(&self, mechanism: &str) -> Outcome<PathBuf> {
         match self.inline {
             true => Ok(place::inline(&inline::package(&self.path)?, mechanism)),
@@ -34,7 +34,7 @@ impl Entry {
         }
     }
 
-    /// A model file is called like its mechanism: what to say if it is not.
+    /// A warning if the name of a model file differs from that of its mechanism.
     pub fn misnamed(&self, mechanism: &str) -> Option<String> {
         let (stem, snake) = (self.path.file_stem()?.to_string_lossy(), snake_case(mechanism));
         (!self.inline && stem != snake).then(|| {
@@ -50,7 +50,7 @@ impl Entry {
 ///
 /// # Errors
 ///
-/// A path cannot be read, or there is no model at all.
+/// A path cannot be read, or there is no model.
 pub fn collect(paths: &[PathBuf]) -> Outcome<Vec<Entry>> {
     let mut entries = Vec::new();
     for path in paths {
@@ -84,7 +84,7 @@ fn file(path: &Path, entries: &mut Vec<Entry>) -> Outcome {
             Invocation::Inline(source) => {
                 entries.push(Entry { path: path.to_path_buf(), source, inline: true })
             }
-            // As the macro does: beside Cargo.toml, else beside the source file.
+            // As in the macro: relative to Cargo.toml, else to the source file.
             Invocation::File(file) => {
                 let beside = path.with_file_name(&file);
                 let named = inline::package(path).map(|package| package.join(&file));
@@ -95,7 +95,7 @@ fn file(path: &Path, entries: &mut Vec<Entry>) -> Outcome {
     Ok(())
 }
 
-/// Adds a model file, unless it is there.
+/// Adds a model file, unless it is already there.
 fn add(path: &Path, entries: &mut Vec<Entry>) {
     let real = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let this = real(path);
@@ -116,7 +116,7 @@ fn walk(folder: &Path, entries: &mut Vec<Entry>) -> Outcome {
         let is_folder = path.is_dir() && !path.is_symlink();
         match path.extension().and_then(|extension| extension.to_str()) {
             _ if hidden => {}
-            // Build output holds copies of what was built.
+            // Build output contains copies of sources.
             _ if is_folder && path.join("CACHEDIR.TAG").exists() => {}
             _ if is_folder => walk(&path, entries)?,
             Some("mech" | "rs") if path.is_file() => file(&path, entries)?,

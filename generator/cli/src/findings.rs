@@ -1,4 +1,4 @@
-//! Mistakes in models for programs: as objects, and as a log in SARIF.
+//! Mistakes in models for programs: as JSON objects, and as a log in SARIF.
 
 use hodograph_generator::diagnostics::codes::ALL;
 use hodograph_generator::diagnostics::{Diagnostic, Label, Severity};
@@ -24,7 +24,7 @@ pub struct Finding {
     pub related: Vec<Related>,
 }
 
-/// A place in a file. Lines and columns count from 1, columns in characters; the end is the place behind the
+/// A place in a file. Lines and columns count from 1, columns in characters; the end is the place after the
 /// last character.
 #[derive(Clone, Debug, Serialize)]
 pub struct Place {
@@ -55,7 +55,7 @@ impl Place {
         let (source, span) = source.locate(label.span);
         let at = source.location_here(span);
         let (line, column) = at.map_or((1, 1), |at| (at.line, at.column));
-        // An inline model has places of tokens, not of characters: its end is not known.
+        // An inline model has places of tokens, not of characters: its end is unknown.
         let end = match (source.is_inline(), source.text()) {
             (false, Some(_)) => {
                 let mut behind = span;
@@ -149,7 +149,7 @@ pub fn sarif(findings: &[Finding]) -> Value {
     })
 }
 
-/// A path as a reference: with `/` between its parts, and what cannot stand there by its numbers.
+/// A path as a URI reference: with `/` between its parts, other special characters percent-encoded.
 fn uri(path: &str) -> String {
     let allowed = |byte: u8| byte.is_ascii_alphanumeric() || b"/-._~".contains(&byte);
     path.replace(std::path::MAIN_SEPARATOR, "/")

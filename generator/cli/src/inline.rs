@@ -14,21 +14,21 @@ use crate::stop::{Outcome, Stop};
 /// Largest size of a Rust file with models, in bytes.
 const MAX_BYTES: usize = 16 << 20;
 
-/// What a `mechanism!` in a Rust file names.
+/// The model of a `mechanism!` in a Rust file.
 #[derive(Clone, Debug)]
 pub enum Invocation {
-    /// a model in the file itself; in the source the rest of the file is blank, so that places are those in
-    /// the file
+    /// a model in the file itself; all other text of the source is blanked, so that places are those in the
+    /// file
     Inline(Source),
     /// a model file, by the path in the macro
     File(PathBuf),
 }
 
-/// The models of a Rust file, in their order.
+/// The models of a Rust file, in order.
 ///
 /// # Errors
 ///
-/// The file cannot be read, or is no Rust.
+/// The file cannot be read, or is not Rust.
 pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
     let text = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
     if !text.contains("mechanism") {
@@ -37,7 +37,7 @@ pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
     let stream = TokenStream::from_str(&text).map_err(|error| {
         let start = error.span().start();
         Stop::Fault(format!(
-            "{}:{}:{}: this is no Rust: {error}",
+            "{}:{}:{}: this is not Rust: {error}",
             path.display(),
             start.line,
             start.column + 1
@@ -91,13 +91,13 @@ fn is_invocation(name: &TokenTree, bang: &TokenTree) -> bool {
         && matches!(bang, TokenTree::Punct(bang) if bang.as_char() == '!')
 }
 
-/// Where tokens stand in the file, from the first to the last.
+/// The range of tokens in the file, from the first to the last.
 fn places(trees: &[TokenTree]) -> Option<Range<usize>> {
     Some(trees.first()?.span().byte_range().start..trees.last()?.span().byte_range().end)
 }
 
-/// The text up to the end of a range, with everything outside it and in some parts of it blank, line by line
-/// and character by character the same length.
+/// The text up to the end of a range. Everything before the range and in some parts of it is replaced by
+/// blanks, so that lines and columns stay the same.
 fn blanked(text: &str, range: Range<usize>, parts: &[Range<usize>]) -> String {
     let is_kept = |at: usize| at >= range.start && !parts.iter().any(|part| part.contains(&at));
     let upto = text.char_indices().take_while(|(at, _)| *at < range.end);
@@ -108,9 +108,9 @@ fn blanked(text: &str, range: Range<usize>, parts: &[Range<usize>]) -> String {
 ///
 /// # Errors
 ///
-/// There is none.
+/// There is no package.
 pub fn package(path: &Path) -> Outcome<PathBuf> {
-    // As the user wrote the path, as long as that leads upwards.
+    // search the path as written, as long as that leads upwards
     let written = path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
     let absolute = std::path::absolute(path).map_err(|error| Stop::unreadable(path, &error))?;
     written
@@ -118,7 +118,7 @@ pub fn package(path: &Path) -> Outcome<PathBuf> {
         .find(|folder| folder.join("Cargo.toml").is_file())
         .map(Path::to_path_buf)
         .ok_or_else(|| {
-            Stop::Call(format!("{} belongs to no package: there is no Cargo.toml above it", path.display()))
+            Stop::Call(format!("{} is not in a package: there is no Cargo.toml above it", path.display()))
         })
 }
 

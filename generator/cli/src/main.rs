@@ -18,7 +18,6 @@ mod inline;
 mod interrupt;
 mod json;
 mod lsp;
-mod mcap_file;
 mod model;
 mod output;
 mod plot;
@@ -31,7 +30,7 @@ mod table;
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
     export as export_library, fit, fmt, gradient, import as import_urdf, lsp as language_server, new, orbit,
-    plot as draw, serve, simulate, solve,
+    plot as draw, serve, simulate, solve, validate,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -56,6 +55,7 @@ enum Command {
     Gradient(Box<gradient::Arguments>),
     Orbit(Box<orbit::Arguments>),
     Fit(Box<fit::Arguments>),
+    Validate(validate::Arguments),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
     Plot(draw::Arguments),
@@ -98,6 +98,7 @@ fn main() -> ExitCode {
         Command::Gradient(arguments) => gradient::run(&arguments),
         Command::Orbit(arguments) => orbit::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Validate(arguments) => validate::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),
         Command::DeriveWorker(arguments) => derive_worker::run(&arguments),

@@ -1,4 +1,4 @@
-//! Reads models from files, checks them and finds their equations.
+//! Reads models from files and checks them.
 
 use std::path::Path;
 
@@ -17,15 +17,15 @@ use crate::stop::{Outcome, Stop};
 pub struct Model {
     /// its text
     pub source: Source,
-    /// its meaning
+    /// the checked mechanism
     pub mechanism: Mechanism,
 }
 
-/// Reads and checks a model file; says what is wrong on stderr.
+/// Reads and checks a model file; reports mistakes on standard error.
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] where there is no such file, [`Stop::Reported`] where it has mistakes.
+/// [`Stop::Call`] if there is no such file, [`Stop::Reported`] if it has mistakes.
 pub fn load(path: &Path) -> Outcome<Model> {
     if let Err(error) = std::fs::metadata(path) {
         return Err(Stop::unreadable(path, &error));
@@ -33,12 +33,12 @@ pub fn load(path: &Path) -> Outcome<Model> {
     checked(files::model(path))
 }
 
-/// Checks a model; says what is wrong on stderr, and what makes numbers doubtful. What is only superfluous or
-/// missing is said by `hodograph check`.
+/// Checks a model; reports on standard error its mistakes, and the warnings that concern its numbers. Other
+/// warnings are reported by `hodograph check`.
 ///
 /// # Errors
 ///
-/// [`Stop::Reported`] where it has mistakes.
+/// [`Stop::Reported`] if it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
     let mut found = check(&source);
     found.diagnostics.retain(|found| found.severity == Severity::Error || !found.code.is_of_text());

@@ -11,7 +11,7 @@ use crate::stop::{Outcome, Stop};
 ///
 /// # Errors
 ///
-/// [`Stop::ReaderGone`] where the other end of the pipe is closed.
+/// [`Stop::ReaderGone`] if the other end of the pipe is closed.
 pub fn text(text: &str) -> Outcome {
     bytes(text.as_bytes())
 }
@@ -20,7 +20,7 @@ pub fn text(text: &str) -> Outcome {
 ///
 /// # Errors
 ///
-/// As [`text`].
+/// Those of [`text`].
 pub fn bytes(bytes: &[u8]) -> Outcome {
     let mut stdout = io::stdout().lock();
     stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
@@ -33,19 +33,18 @@ pub fn bytes(bytes: &[u8]) -> Outcome {
 ///
 /// # Errors
 ///
-/// As [`text`].
+/// Those of [`text`].
 pub fn line(line: &str) -> Outcome {
     text(&format!("{line}\n"))
 }
 
-/// Writes text for people to standard error, with a newline. Nobody may read it, and its disk may be full:
-/// that is no reason to fail.
+/// Writes text for people to standard error, with a newline. Errors of writing it are ignored.
 pub fn say(text: impl std::fmt::Display) {
     let _ = writeln!(io::stderr().lock(), "{}", visible(&text.to_string()));
 }
 
-/// Text without what a terminal would obey: control characters, but for ends of lines and tabs, are shown by
-/// their numbers, and so are those that turn the direction of writing.
+/// Text that is safe in a terminal: control characters except line ends and tabs, and characters that change
+/// the direction of writing, are replaced by their code points.
 pub fn visible(text: &str) -> String {
     let shown = |c: char| {
         let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
@@ -58,8 +57,8 @@ pub fn visible(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Standard output whose reader may leave before the end. What comes after that is not written, but the work
-/// goes on to its exit code.
+/// Standard output whose reader may close the pipe before the end. Later text is dropped, but the command
+/// runs to its exit code.
 #[derive(Default)]
 pub struct Report {
     reader_gone: bool,
@@ -70,7 +69,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// It cannot be written, for another reason than that nobody reads it.
+    /// Writing fails for another reason than a closed pipe.
     pub fn text(&mut self, text: &str) -> Outcome {
         if self.reader_gone {
             return Ok(());
@@ -89,28 +88,29 @@ impl Report {
 ///
 /// # Errors
 ///
-/// As [`text`].
+/// Those of [`text`].
 pub fn json(value: &impl serde::Serialize) -> Outcome {
     let line_of =
         serde_json::to_string(value).map_err(|error| Stop::Fault(format!("cannot write JSON: {error}")))?;
     line(&line_of)
 }
 
-/// Writes a file, whole or not at all: beside its place first, and moved there when it is complete.
+/// Writes a file, completely or not at all: to a temporary file beside it, which is renamed when it is
+/// complete.
 ///
 /// # Errors
 ///
-/// The file cannot be written: then what was there before is there still.
+/// The file cannot be written; then a previous file is unchanged.
 pub fn file(path: &Path, bytes: &[u8]) -> Outcome {
     check(path)?;
     written(path, bytes).map_err(|error| Stop::unwritable(path, &error))
 }
 
-/// Writes a file that is not there yet, whole or not at all.
+/// Writes a file that must not exist yet, completely or not at all.
 ///
 /// # Errors
 ///
-/// It is there, or cannot be written.
+/// It exists already, or cannot be written.
 pub fn new_file(path: &Path, bytes: &[u8]) -> Outcome {
     let write = || -> io::Result<()> {
         let mut file = temporary(folder(path))?;
@@ -122,11 +122,11 @@ pub fn new_file(path: &Path, bytes: &[u8]) -> Outcome {
     write().map_err(|error| Stop::unwritable(path, &error))
 }
 
-/// Refuses a file that [`file`] cannot write, before the work whose result it is to hold.
+/// Refuses a path that [`file`] cannot write, before the result is computed.
 ///
 /// # Errors
 ///
-/// The path is a folder, or its folder is missing.
+/// The path is a folder, or its folder does not exist.
 pub fn check(path: &Path) -> Outcome {
     let refused = |kind| Err(Stop::unwritable(path, &io::Error::from(kind)));
     if path.is_dir() {
@@ -135,7 +135,7 @@ pub fn check(path: &Path) -> Outcome {
     check_folder(path)
 }
 
-/// Refuses a path whose folder is missing.
+/// Refuses a path whose folder does not exist.
 fn check_folder(path: &Path) -> Outcome {
     let refused = |kind| Err(Stop::unwritable(path, &io::Error::from(kind)));
     match folder(path).metadata() {
@@ -148,14 +148,14 @@ fn check_folder(path: &Path) -> Outcome {
     }
 }
 
-/// Refuses files to be written that are one, or are among those that are read, whatever they are called.
+/// Refuses output files that are the same file, or an input file, under any of its paths.
 ///
 /// # Errors
 ///
 /// [`Stop::Call`].
-pub fn apart(written: &[&Path], read: &[PathBuf]) -> Outcome {
+pub fn check_distinct(written: &[&Path], read: &[PathBuf]) -> Outcome {
     let place = |path: &Path| -> PathBuf {
-        // A file that is not there yet is known by its folder.
+        // A file that does not exist yet is identified by its folder.
         let beside = || Some(folder(path).canonicalize().ok()?.join(path.file_name()?));
         path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_path_buf())
     };
@@ -163,11 +163,11 @@ pub fn apart(written: &[&Path], read: &[PathBuf]) -> Outcome {
     for (index, path) in written.iter().enumerate() {
         if places[..index].contains(&places[index]) {
             let path = path.display();
-            return Err(Stop::Call(format!("{path} is to be two files: give each its own name")));
+            return Err(Stop::Call(format!("{path} is given for two files: give each its own name")));
         }
         if let Some(input) = read.iter().find(|input| place(input) == places[index]) {
             return Err(Stop::Call(format!(
-                "{} would be written over {}, which is read: give another name",
+                "{} would overwrite {}, which is an input: give another name",
                 path.display(),
                 input.display()
             )));
@@ -176,13 +176,13 @@ pub fn apart(written: &[&Path], read: &[PathBuf]) -> Outcome {
     Ok(())
 }
 
-/// Where a file is, or is to be.
+/// The folder of a file.
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // What a link points to is written, not the link; a device or pipe has no place beside it.
+    // The target of a link is written, not the link; devices and pipes are written directly.
     let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     if std::fs::metadata(&place).is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return std::fs::OpenOptions::new().write(true).open(&place)?.write_all(bytes);
@@ -197,25 +197,25 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.persist(&place).map(drop).map_err(|error| error.error)
 }
 
-/// A file in a folder that is not seen until it gets its name.
+/// A hidden temporary file in a folder.
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hodograph");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As a new file of the user: the mask of the process applies.
+        // The permissions of a new file of the user: the mask of the process applies.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)
 }
 
-/// Writes a folder with these files (paths in it and texts), whole or not at all: beside its place first, and
-/// moved there when it is complete.
+/// Writes a folder with these files (paths in it and texts), completely or not at all: to a temporary folder
+/// beside it, which is renamed when it is complete.
 ///
 /// # Errors
 ///
-/// The folder exists or cannot be written: then nothing of it is there.
+/// The folder exists or cannot be written; then nothing is left.
 pub fn files(path: &Path, files: &[(String, String)]) -> Outcome {
     check_folder(path)?;
     let make = || -> io::Result<()> {
@@ -238,7 +238,7 @@ pub fn files(path: &Path, files: &[(String, String)]) -> Outcome {
     make().map_err(|error| Stop::unwritable(path, &error))
 }
 
-/// Says why a command stopped, and gives the exit code.
+/// Reports why a command stopped, and returns the exit code.
 pub fn report(stop: Stop) -> ExitCode {
     match stop {
         Stop::Call(message) => {
@@ -260,7 +260,7 @@ pub fn report(stop: Stop) -> ExitCode {
     }
 }
 
-/// Writes the help that was asked for, or what is wrong with the call, and gives the exit code.
+/// Writes the requested help, or the mistake of the call, and returns the exit code.
 pub fn answer(answer: &clap::Error) -> ExitCode {
     let written = answer.print().and_then(|()| io::stdout().flush());
     match written {

@@ -2,7 +2,7 @@
 
 use hodograph_generator::suggest::distance;
 
-/// The name in `names` that is most like `name`, if one is near enough to be what was meant.
+/// The name in `names` most similar to `name`, if it is similar enough to be meant.
 pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = match name.chars().count() {
         0..=2 => 0,
@@ -16,13 +16,14 @@ pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
         .map(|(_, other)| other)
 }
 
-/// The only name that begins with these letters.
+/// The only name that begins with `name`.
 fn completed<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let mut longer = names.into_iter().filter(|other| name.len() > 2 && other.starts_with(name));
     longer.next().filter(|_| longer.next().is_none())
 }
 
-/// The end of a message about an unknown name: a near one if there is one, else the first few that there are.
+/// The end of a message about an unknown name: a similar name if there is one, else the first names that
+/// exist.
 pub fn hint<'a>(name: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
     if let Some(other) = nearest(name, names.clone()).or_else(|| completed(name, names.clone())) {
         return format!("did you mean `{other}`?");

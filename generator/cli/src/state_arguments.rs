@@ -15,7 +15,7 @@ use crate::stop::{Outcome, Stop};
 /// Largest size of a state, in bytes.
 const MAX_STATE: usize = 16 << 20;
 
-/// The state as it stands on the command line.
+/// The options that give a state.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct StateArguments {
     /// coordinates, speeds, inputs and the time t by name, as q1=0.3,u1=2 (the rest as in the model); or a
@@ -27,7 +27,7 @@ pub struct StateArguments {
     parameter: Vec<String>,
 }
 
-/// What an argument of `--state` is.
+/// An argument of `--state`.
 enum Given<'a> {
     /// an object
     Text(&'a str),
@@ -55,7 +55,15 @@ impl StateArguments {
         self.state.is_empty() && self.parameter.is_empty()
     }
 
-    /// The files that are read.
+    /// The options as they were given.
+    pub fn given(&self) -> Vec<String> {
+        let options = |name: &'static str, list: &[String]| -> Vec<String> {
+            list.iter().map(|text| format!("{name}={text}")).collect()
+        };
+        [options("--state", &self.state), options("--parameter", &self.parameter)].concat()
+    }
+
+    /// The input files.
     pub fn files(&self) -> Vec<PathBuf> {
         let file = |argument: &String| match given(argument) {
             Given::Place(path) if path != "-" => Some(PathBuf::from(path)),
@@ -64,11 +72,12 @@ impl StateArguments {
         self.state.iter().filter_map(file).collect()
     }
 
-    /// The state of a model: quaternions and loops checked, dependent coordinates completed.
+    /// The state of a model, after quaternions and loops have been checked, with completed dependent
+    /// coordinates.
     ///
     /// # Errors
     ///
-    /// [`Stop::Call`] where a file cannot be read, or two objects are given; those of [`State::read`],
+    /// [`Stop::Call`] if a file cannot be read, or two objects are given; those of [`State::read`],
     /// [`State::set`] and [`Machine::complete`].
     pub fn state(&self, machine: &Machine) -> Outcome<State> {
         let mechanism = &machine.mechanism;
@@ -117,7 +126,7 @@ impl StateArguments {
     }
 }
 
-/// The parts between commas, but those in brackets.
+/// The parts between commas outside brackets.
 fn assignments(text: &str) -> Vec<&str> {
     let (mut parts, mut start, mut depth) = (Vec::new(), 0, 0_i32);
     for (at, letter) in text.char_indices() {
@@ -149,6 +158,6 @@ fn read(place: &str) -> Outcome<String> {
     };
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Failure::bad_json(format!("the state is no UTF-8 at byte {at}")).into()
+        Failure::bad_json(format!("the state is not UTF-8 at byte {at}")).into()
     })
 }

@@ -1,4 +1,4 @@
-//! The ways in which a command fails, with messages and exit codes.
+//! The errors of commands, with messages and exit codes.
 
 use std::fmt;
 
@@ -7,15 +7,15 @@ use crate::json::Failure;
 /// Why a command stopped.
 #[derive(Clone, Debug)]
 pub enum Stop {
-    /// The call was wrong (a missing file, say): told on stderr, exit 2.
+    /// The call was wrong (a missing file, say): reported on standard error, exit 2.
     Call(String),
-    /// It could not be done: told on stderr, exit 1.
+    /// The work failed: reported on standard error, exit 1.
     Fault(String),
-    /// An error object for stdout, exit 1.
+    /// An error object on standard output, exit 1.
     Object(Failure),
-    /// Everything has been said: exit 1.
+    /// The error has been reported already: exit 1.
     Reported,
-    /// Nobody reads any more what is written: exit 0, in silence.
+    /// The reader of standard output has closed the pipe: exit 0, without a message.
     ReaderGone,
 }
 
@@ -23,12 +23,12 @@ pub enum Stop {
 pub type Outcome<T = ()> = Result<T, Stop>;
 
 impl Stop {
-    /// A file that cannot be read.
+    /// The error of a file that cannot be read.
     pub fn unreadable(path: &std::path::Path, error: &std::io::Error) -> Self {
         Stop::Call(format!("cannot read {}: {error}", path.display()))
     }
 
-    /// A file that cannot be written.
+    /// The error of a file that cannot be written.
     pub fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Self {
         Stop::Fault(format!("cannot write {}: {error}", path.display()))
     }

@@ -1,5 +1,5 @@
-//! Reads laws of restitution by name, and finds the surface of a contact: what options say, else what the
-//! model states.
+//! Reads laws of restitution by name, and determines the surface of a contact: from the options, else from
+//! the model.
 
 use hodograph::{Cause, ComponentKind, Contacts, Law, Surface};
 use hodograph_interpreter::motion::GivenSurface;
@@ -12,15 +12,18 @@ use crate::stop::{Outcome, Stop};
 ///
 /// # Errors
 ///
-/// `unknown_name`.
+/// `unknown_law`.
 pub fn law(name: &str) -> Result<Law, Failure> {
-    Law::named(name).ok_or_else(|| {
-        Failure::new(Kind::UnknownName, format!("there is no law `{name}`: give newton, poisson or stronge"))
-    })
+    Law::read(name).map_err(|error| Failure::new(Kind::Of(error.cause()), error.to_string()))
 }
 
-/// What is given of the surface of a contact, and for what that leaves open what the model states. What is
-/// taken from the model is told on standard error.
+/// What the option `--law` says of itself.
+pub fn help_of_law() -> String {
+    format!("hypothesis of restitution, one of {} [default: that of the model]", Law::NAMES.join(", "))
+}
+
+/// The surface of a contact: the given values, and for the others those of the model, which are reported on
+/// standard error.
 pub fn stated_in(mechanism: &dyn Contacts<f64>, contact: usize, given: GivenSurface) -> GivenSurface {
     let Some(stated) = mechanism.surface(contact) else { return given };
     let says = [
@@ -37,7 +40,7 @@ pub fn stated_in(mechanism: &dyn Contacts<f64>, contact: usize, given: GivenSurf
     given.or(stated.into())
 }
 
-/// The surface as it stands on the command line.
+/// The options for a surface.
 #[derive(Clone, Debug, clap::Args)]
 pub struct SurfaceArguments {
     /// Coulomb's coefficient of friction, not negative [default: that of the model]
@@ -46,8 +49,7 @@ pub struct SurfaceArguments {
     /// coefficient of restitution, between 0 and 1 [default: that of the model]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     pub e: Option<f64>,
-    /// hypothesis of restitution: newton, poisson or stronge [default: that of the model]
-    #[arg(long, value_name = "LAW")]
+    #[arg(long, value_name = "LAW", help = help_of_law())]
     pub law: Option<String>,
 }
 
@@ -56,11 +58,11 @@ impl SurfaceArguments {
     ///
     /// # Errors
     ///
-    /// `unknown_name`, `not_finite`, and [`Stop::Call`] where a number stands neither here nor in the model.
+    /// `unknown_law`, `not_finite`, and [`Stop::Call`] if a value is given neither here nor in the model.
     pub fn surface(&self, mechanism: &dyn Contacts<f64>, contact: usize) -> Outcome<Surface<f64>> {
         for (option, value) in [("--mu", self.mu), ("--e", self.e)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
-                let message = format!("{option} is {value}: give a finite number");
+                let message = format!("{option} is {value}: it must be finite");
                 return Err(Failure::new(Kind::Of(Cause::NotFinite), message).into());
             }
         }

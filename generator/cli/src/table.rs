@@ -1,15 +1,15 @@
-//! Tables for people: columns of text, aligned by blanks.
+//! Tables for people: columns of aligned text.
 
 pub use hodograph_animation::number;
 
-/// Rows of cells under a head.
+/// Rows of cells under a header.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table with these heads.
+    /// A table with these headers.
     pub fn new<S: Into<String>>(heads: impl IntoIterator<Item = S>) -> Self {
         Table { rows: vec![heads.into_iter().map(Into::into).collect()] }
     }
@@ -19,13 +19,13 @@ impl Table {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
-    /// Whether there is nothing below the heads.
+    /// Whether there are no rows below the header.
     pub fn is_empty(&self) -> bool {
         self.rows.len() < 2
     }
 
-    /// The table as text, each line behind this indentation: the first column to the left, the others to the
-    /// right, but those that hold a word, to the left.
+    /// The table as text, each line with this indentation. The first column and columns with words are
+    /// left-aligned, the others right-aligned.
     pub fn text(&self, indentation: &str) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let cells = |column: usize| self.rows.iter().filter_map(move |row| row.get(column));
@@ -53,7 +53,7 @@ fn is_number(cell: &str) -> bool {
     cell.parse::<f64>().is_ok() || cell == "-"
 }
 
-/// A name with its unit, as `q1 [rad]`; without one where there is none.
+/// A name with its unit, such as `q1 [rad]`; without one if the unit is empty.
 pub fn with_unit(name: &str, unit: &str) -> String {
     match unit {
         "" | "1" => name.to_owned(),

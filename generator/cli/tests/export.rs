@@ -33,10 +33,15 @@ fn output(command: &mut Command, folder: &Path) -> Output {
 /// Builds the crate in the folder with the workspace's versions of its dependencies, where the other crates
 /// of tests are built.
 fn build(folder: &Path) -> PathBuf {
+    build_with(folder, &[])
+}
+
+/// As [`build`], with more arguments for cargo.
+fn build_with(folder: &Path, more: &[&str]) -> PathBuf {
     std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    let target = root().join("target/tmp/downstream");
+    let target = root().join("target/tmp/fixtures");
     let mut cargo = Command::new(env!("CARGO"));
-    output(cargo.args(["build", "--offline", "--target-dir", target.to_str().unwrap()]), folder);
+    output(cargo.args(["build", "--offline", "--target-dir", target.to_str().unwrap()]).args(more), folder);
     target
 }
 
@@ -84,6 +89,7 @@ fn a_program_in_c_gets_the_answers_of_the_tool() {
         ("separation", numbers(&hit["v"])),
         ("speeds", independent(&hit["u_after"])),
         ("energy_change", numbers(&hit["kinetic_energy_change"])),
+        ("works", [numbers(&hit["dE"]), numbers(&hit["dEn"])].concat()),
     ] {
         let found = line(name);
         let near =
@@ -94,14 +100,234 @@ fn a_program_in_c_gets_the_answers_of_the_tool() {
         );
     }
     assert_eq!(line("position_bc").len(), 3);
+    assert_eq!(line("compressions"), numbers(&hit["compressions"]));
+    assert_eq!(hit["sensitivity"], serde_json::json!([]));
+    assert_eq!(line("sensitivity"), [0.0; 5]);
+    assert_eq!(line("energy_gained"), [0.0]);
+    assert_eq!(line("selection"), [0.0]);
     // The last line of this name is the call whose answer stands where its argument stood.
     let again = answer.lines().filter(|line| line.starts_with("accelerations ")).collect::<Vec<_>>();
     assert_eq!(again.len(), 2);
     assert_eq!(again[0], again[1]);
 }
 
-/// The program of a library's README prints its number, and two mechanisms are in one program: as shared libraries,
-/// and as objects of which only the functions of the headers are seen from outside.
+/// Compiles a program in C against the static library of an exported crate and runs it; gives the rows of
+/// numbers that it prints, each with the word before them.
+fn run_in_c(exported: &Path, library: &Path, source: &Path, input: &str) -> Vec<(String, Vec<f64>)> {
+    let said = said_in_c(exported, library, source, input);
+    let row = |line: &str| {
+        let (name, rest) = line.split_once(' ').unwrap();
+        let numbers = rest.split_whitespace().filter_map(|word| word.parse().ok());
+        (name.to_owned(), numbers.collect())
+    };
+    said.lines().map(row).collect()
+}
+
+/// What the program prints.
+fn said_in_c(exported: &Path, library: &Path, source: &Path, input: &str) -> String {
+    std::fs::write(exported.join("input.txt"), input).unwrap();
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-I", "include", "-o", "program"]);
+    output(cc.arg(source).arg(library).args(["-lm", "-lpthread", "-ldl"]), exported);
+    let input = std::fs::File::open(exported.join("input.txt")).unwrap();
+    let said = output(Command::new(exported.join("program")).stdin(input), exported);
+    String::from_utf8(said.stdout).unwrap()
+}
+
+/// The rows of a name.
+fn rows<'a>(all: &'a [(String, Vec<f64>)], name: &str) -> Vec<&'a [f64]> {
+    all.iter().filter(|(of, _)| of == name).map(|(_, numbers)| &**numbers).collect()
+}
+
+/// The value of a constant of an enum in a header.
+fn constant(header: &str, name: &str) -> f64 {
+    let line = header.lines().find_map(|line| line.trim().strip_prefix(&format!("{name} = "))).unwrap();
+    line.trim_end_matches(',').parse().unwrap()
+}
+
+/// `simulation.c`, the program of the README and Python's ctypes follow the motion of the tool: its events
+/// and its end.
+#[test]
+fn programs_in_c_follow_motions() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = root().join("models/planar_double_pendulum.mech");
+    let exported = export(&model, folder.path(), &[]);
+    let built = build_with(&exported, &["--features", "simulation"]).join("debug");
+    let library = built.join("libplanar_double_pendulum.a");
+    let header = exported.join("include/planar_double_pendulum_simulation.h");
+    let header = std::fs::read_to_string(header).unwrap();
+    let table = std::fs::read_to_string(root().join("tests/data/doors/planar_double_pendulum.csv")).unwrap();
+    let table: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let states: String = table.iter().map(|row| format!("{}\n", row[..4].join(" "))).collect();
+    let source = root().join("generator/cli/tests/export/simulation.c");
+    let said = run_in_c(&exported, &library, &source, &states);
+
+    let surface = ["--mu", "0.3", "--e", "0.5", "--law", "stronge"];
+    let call = ["simulate", model.to_str().unwrap(), "--until", "2", "--format", "json"];
+    let lines = hodograph(&[&call[..], &surface].concat(), "").lines();
+    let (expected, moments): (Vec<_>, Vec<_>) =
+        lines.iter().partition(|line: &&serde_json::Value| line.get("event").is_some());
+    // Up to the first collision module and tool compute the same; their collisions differ in rounding.
+    let near = |(found, expected): (&f64, &f64)| (found - expected).abs() < 1e-9;
+    let events = rows(&said, "event");
+    assert!(events.len() == expected.len() && events.len() > 1, "{said:?}");
+    assert_eq!(events[0][0], expected[0]["t"].as_f64().unwrap());
+    for (event, expected) in events.iter().zip(&expected) {
+        let kind = expected["event"].as_str().unwrap().to_uppercase();
+        let kind = constant(&header, &format!("PLANAR_DOUBLE_PENDULUM_EVENT_{kind}"));
+        assert_eq!(event[1..3], [kind, 0.0]);
+        // The wall's normal is -N.x, and its impulse has no part along N.z.
+        let impulse = numbers(&expected["impulse"]);
+        assert!((event[4] + impulse[0]).abs() < 1e-9 && event[6] == 0.0, "{event:?} {expected}");
+        let of_tool = [numbers(&expected["t"]), numbers(&expected["kinetic_energy_change"])].concat();
+        assert!([event[0], event[3]].iter().zip(&of_tool).all(near), "{event:?} {expected}");
+    }
+    let last = moments.last().unwrap();
+    let last = [numbers(&last["q"]), numbers(&last["u"])].concat();
+    let end = rows(&said, "end")[0];
+    assert!(end.len() == 4 && end.iter().zip(&last).all(near), "{end:?} {last:?}");
+    assert_eq!(rows(&said, "force"), [[0.0; 3]]);
+
+    // The twenty states of every door.
+    let expected: Vec<Vec<f64>> =
+        table.iter().map(|row| row[4..].iter().map(|number| number.parse().unwrap()).collect()).collect();
+    assert_eq!((rows(&said, "state"), expected.len()), (expected.iter().map(|row| &**row).collect(), 20));
+
+    // "0.05 s: event 0 at contact 0", from the same start with the same surface.
+    let readme = std::fs::read_to_string(exported.join("README.md")).unwrap();
+    let program = readme.split("```c\n").nth(2).unwrap().split("```").next().unwrap();
+    std::fs::write(exported.join("readme.c"), program).unwrap();
+    let told = run_in_c(&exported, &library, Path::new("readme.c"), "");
+    let times: Vec<f64> = told.iter().map(|(time, _)| time.parse().unwrap()).collect();
+    assert_eq!(times, events.iter().map(|event| event[0]).collect::<Vec<_>>());
+    assert!(told.iter().zip(&events).all(|((_, numbers), event)| numbers[..] == event[1..3]), "{told:?}");
+
+    // The shared library from Python, without a package, as the documents show it.
+    let script = root().join("generator/cli/tests/export/motion.py");
+    let documents = std::fs::read_to_string(root().join("docs/doors.md")).unwrap();
+    assert!(documents.contains(&std::fs::read_to_string(&script).unwrap()));
+    if Command::new("python3").arg("--version").output().is_ok_and(|python| python.status.success()) {
+        let mut python = Command::new("python3");
+        let said = output(python.arg(script).arg(built.join("libplanar_double_pendulum.so")), &exported);
+        let said = String::from_utf8(said.stdout).unwrap();
+        let again: Vec<f64> = said.split_whitespace().map(|number| number.parse().unwrap()).collect();
+        assert_eq!(again, end);
+    } else {
+        println!("no python3 here: motion.py was not tried");
+    }
+}
+
+/// Bad input has the errors that every door has: the status is that of the cause, and motions have the words.
+#[test]
+fn bad_input_has_the_errors_of_every_door() {
+    use serde_json::Value;
+
+    let folder = tempfile::tempdir().unwrap();
+    let exported = export(&root().join("tests/data/doors/errors.mech"), folder.path(), &[]);
+    let library = build_with(&exported, &["--features", "simulation"]).join("debug/liberrors.a");
+    let header = std::fs::read_to_string(exported.join("include/errors.h")).unwrap();
+    let mistakes: Vec<Value> = serde_json::from_str(&crate::common::data("doors/errors.json")).unwrap();
+    let is_of = |mistake: &&Value, door| mistake["doors"].as_array().unwrap().iter().any(|of| of == door);
+    let mistakes: Vec<&Value> =
+        mistakes.iter().filter(|one| is_of(one, "c") || is_of(one, "motion")).collect();
+    let line = |mistake: &&Value| -> String {
+        let number = |section: &str, name: &str, default: f64| match &mistake[section][name] {
+            Value::Null => default.to_string(),
+            Value::String(text) => text.clone(),
+            number => number.to_string(),
+        };
+        let of = |name: &str, default: f64| mistake[name].as_f64().unwrap_or(default);
+        let call = ["accelerations", "collide", "simulate"].iter().position(|call| mistake["call"] == *call);
+        let law = if mistake["law"] == "hooke" { 9 } else { 0 };
+        let mut words =
+            vec![(call.unwrap() + 1).to_string(), of("mu", 0.3).to_string(), of("e", 0.5).to_string()];
+        words.extend([law.to_string(), of("tolerance", 1e-9).to_string()]);
+        let parameters = [("m", 2.0), ("j", 0.1), ("k", 0.15), ("w", 1.0), ("g", 9.81)];
+        words.extend(parameters.map(|(name, default)| number("parameters", name, default)));
+        words.extend([("s", 1.0), ("z", 0.5), ("a", 0.0)].map(|(name, default)| number("q", name, default)));
+        words.extend(
+            [("us", 1.0), ("uz", -1.0), ("ua", 0.5)].map(|(name, default)| number("u", name, default)),
+        );
+        words.join(" ") + "\n"
+    };
+    let input: String = mistakes.iter().map(line).collect();
+    let source = root().join("generator/cli/tests/export/errors.c");
+    let said = said_in_c(&exported, &library, &source, &input);
+    assert_eq!(said.lines().count(), mistakes.len(), "{said}");
+    let (mut statuses, mut words) = (0, 0);
+    for (mistake, said) in mistakes.iter().zip(said.lines()) {
+        let kind = mistake["kind"].as_str().unwrap();
+        match said.split_once(' ') {
+            // REFUSED, with a message.
+            Some(("-1", message)) => {
+                assert!(message.starts_with(&format!("{kind}: ")), "{mistake}: {message}");
+                assert!(message.contains(mistake["words"].as_str().unwrap()), "{mistake}: {message}");
+                words += 1;
+            }
+            _ => {
+                let status = constant(&header, &format!("ERRORS_{}", kind.to_uppercase()));
+                assert_eq!(said.parse::<f64>().unwrap(), status, "{mistake}");
+                statuses += 1;
+            }
+        }
+    }
+    assert!(statuses > 9 && words > 4, "{statuses} {words}");
+}
+
+/// A block with two contacts and an input: it falls (0.1 m), lies, holds 5 N by friction and gives way to
+/// 15 N.
+#[test]
+fn programs_in_c_change_inputs() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("pushed_block.mech");
+    std::fs::copy(root().join("generator/cli/tests/export/pushed_block.mech"), &model).unwrap();
+    assert_eq!(hodograph(&["derive", model.to_str().unwrap()], "").code, 0);
+    let exported = export(&model, folder.path(), &[]);
+    let library = build_with(&exported, &["--features", "simulation"]).join("debug/libpushed_block.a");
+    let header = std::fs::read_to_string(exported.join("include/pushed_block_simulation.h")).unwrap();
+    let source = root().join("generator/cli/tests/export/pushed_block.c");
+    let said = run_in_c(&exported, &library, &source, "");
+    let (m, g, mu) = (2.0, 9.81, 0.5);
+    let events = rows(&said, "event");
+    let event = |kind: &str| {
+        let kind = constant(&header, &format!("PUSHED_BLOCK_EVENT_{kind}"));
+        events.iter().find(|event| event[1] == kind).copied().unwrap()
+    };
+    let floor = constant(&header, "PUSHED_BLOCK_CONTACT_FLOOR");
+    for (kind, time, contact) in [
+        ("COLLISION", (0.2_f64 / g).sqrt(), floor),
+        ("CONTACT", (0.2_f64 / g).sqrt(), floor),
+        ("REST", (0.2_f64 / g).sqrt(), -1.0),
+        ("SLIP", 1.0, floor),
+    ] {
+        let found = event(kind);
+        assert!((found[0] - time).abs() < 1e-11 && found[2] == contact, "{kind} {found:?}");
+    }
+    let rate = 15.0 / m - mu * g;
+    let near = |found: &[f64], expected: &[f64]| {
+        let all = found.iter().zip(expected).all(|(found, expected)| {
+            found == expected || (found - expected).abs() <= 1e-11 * expected.abs().max(1.0)
+        });
+        assert!(found.len() == expected.len() && all, "{found:?} {expected:?}");
+    };
+    // Time, x, z, ux, uz, force of the floor (its second tangent is out of the plane), normal force of the
+    // wall.
+    let moments = rows(&said, "at");
+    assert_eq!(moments.len(), 4);
+    near(moments[0], &[0.5, 0.0, 0.0, 0.0, 0.0, m * g, 0.0, 0.0, 0.0]);
+    near(moments[1], &[0.75, 0.0, 0.0, 0.0, 0.0, m * g, -5.0, 0.0, 0.0]);
+    near(moments[2], &[1.0, 0.0, 0.0, 0.0, 0.0, m * g, -5.0, 0.0, 0.0]);
+    near(moments[3], &[1.5, rate * 0.125, 0.0, rate * 0.5, 0.0, m * g, -mu * m * g, 0.0, 0.0]);
+    // lambda_n, f, cone, s: of a contact that sticks, and of one that slides at 0.25 m/s, whose f is 1/m.
+    let margins = rows(&said, "margins");
+    near(margins[0], &[m * g, f64::INFINITY, mu * m * g - 5.0, f64::INFINITY]);
+    near(margins[1], &[m * g, 1.0 / m, f64::INFINITY, 0.25]);
+    // Straight at 1 m/s without restitution: all of its energy, and of the flags that there was no slip.
+    near(rows(&said, "impact")[0], &[-m / 2.0, -m / 2.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+}
+
+/// The program of a library's README prints its number, and two mechanisms are in one program: as shared
+/// libraries, and as objects of which only the functions of the headers are seen from outside.
 #[test]
 fn several_mechanisms_are_in_one_program() {
     let folder = tempfile::tempdir().unwrap();
@@ -200,9 +426,10 @@ fn every_header_is_c_and_cpp() {
     assert_eq!(hodograph(&["derive", taken.to_str().unwrap()], "").code, 0);
     let models: Vec<PathBuf> = models.chain([reserved, taken]).collect();
     assert!(models.len() > 20);
-    let headers = models.iter().map(|model| {
+    let headers = models.iter().flat_map(|model| {
         let exported = export(model, folder.path(), &[]);
-        std::fs::read_dir(exported.join("include")).unwrap().next().unwrap().unwrap().path()
+        let headers = std::fs::read_dir(exported.join("include")).unwrap();
+        headers.map(|header| header.unwrap().path()).collect::<Vec<_>>()
     });
     let includes: String = headers.map(|header| format!("#include \"{}\"\n", header.display())).collect();
     // All together, so that their names do not clash either.

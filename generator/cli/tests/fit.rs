@@ -79,9 +79,9 @@ fn data_that_are_wrong_are_refused_at_their_place() {
         ("t,height\n0,0.1\n0.1,0.09\n", "the column `height`"),
         ("z\n0.1\n0.09\n", "no column `t`"),
         ("t,z\n0,0.1\n", "one row"),
-        ("t,z,z\n0,0.1,0.1\n", "stands twice"),
+        ("t,z,z\n0,0.1,0.1\n", "occurs twice"),
         ("t\n0\n1\n", "no column holds"),
-        ("trajectory,t,z\na,0,0.1\na,0.1,0.1\nb,0,0.1\nb,0.1,0.1\na,0,0.1\n", "began before"),
+        ("trajectory,t,z\na,0,0.1\na,0.1,0.1\nb,0,0.1\nb,0.1,0.1\na,0,0.1\n", "has rows in two places"),
     ] {
         let run = fit(data, &["--parameters", "e"]);
         assert_eq!(run.code, 2, "{data}: {}", run.stderr);

@@ -272,5 +272,5 @@ fn what_cannot_be_imported_is_said_with_its_place() {
     assert_eq!(hodograph(&["import", "no.urdf"], "").code, 2);
     std::fs::write(&path, b"<robot name=\"\xff\"/>").unwrap();
     let run = hodograph(&["import", &path.display().to_string()], "");
-    assert_eq!((run.code, run.stderr.contains("no UTF-8 at byte 13")), (1, true), "{}", run.stderr);
+    assert_eq!((run.code, run.stderr.contains("not UTF-8 at byte 13")), (1, true), "{}", run.stderr);
 }

@@ -372,7 +372,7 @@ fn a_hundred_thousand_random_edits() {
 ///
 /// `cargo test --release -p hodograph-cli --no-default-features --test all -- --ignored --nocapture latency`
 #[test]
-#[ignore = "times are not held on machines that do other work; instructions are, by tests/instructions"]
+#[ignore = "times are not held on machines that do other work; instructions are, by tests/benchmarks/instructions"]
 fn latency_from_a_key_to_its_diagnostics() {
     let largest = model("arm_7dof.mech");
     let many: String =

@@ -12,7 +12,9 @@ mod common;
 mod contact_laws;
 mod contacts;
 mod docs;
+mod doors;
 mod drawn;
+mod editor_imports;
 #[path = "../../../tests/tests/common/expectations.rs"]
 mod expectations;
 mod export;
@@ -42,4 +44,5 @@ mod stated;
 mod structure;
 mod tutorial;
 mod unusual;
+mod validate;
 mod writing;

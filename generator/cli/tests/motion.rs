@@ -133,7 +133,7 @@ fn no_line_before_an_error_is_lost() {
     let times = |run: &Run| -> Vec<f64> {
         run.lines().iter().filter(|line| line["event"].is_null()).map(|line| number(&line["t"])).collect()
     };
-    // An input that is no number from some time on.
+    // An input that is NaN from some time on.
     let call = [&["--until", "1", "--step", "0.1", "--input", "F=sqrt(0.35-t)"], &surface[..]].concat();
     let run = simulate("incline", &call);
     assert_eq!(run.code, 1);
@@ -297,7 +297,7 @@ fn inputs_and_surfaces_are_read_with_care() {
         ("t,F,F\n0,1,2\n", ":1: the column `F` stands there twice"),
         ("t,F\n0,1\n1,2\n\n1,3\n", ":5: t = 1 after t = 1"),
         ("t,F\n0,1\n1\n", ":3: 1 values for 2 columns"),
-        ("t,F\n0,nan\n", ":2: `nan` is no finite number"),
+        ("t,F\n0,nan\n", ":2: `nan` is not a finite number"),
     ] {
         let run = call(&["--inputs", &table(text)]);
         assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{text} {}", run.stderr);
@@ -317,7 +317,7 @@ fn inputs_and_surfaces_are_read_with_care() {
         let [a, b] = [&rows, &run].map(|run| number(&run.lines().last().unwrap()["q"]["x"]));
         assert!((a - b).abs() < 1e-12, "{expression}: {a} {b}");
     }
-    // What is no number is not hidden by min and max.
+    // min and max do not hide NaN.
     let hidden = call(&["--input", "F=max(0, sqrt(0.2-t))"]);
     assert!(hidden.code == 1 && hidden.stderr.contains("the input F is NaN"), "{}", hidden.stderr);
 }

@@ -4,7 +4,8 @@
 #[path = "common/browser.rs"]
 mod browser;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::common::hodograph;
 
@@ -110,5 +111,31 @@ fn equations_are_set_by_latex() {
             .output()
             .expect("no pdflatex here: install it (Debian: apt-get install texlive-latex-base)");
         assert!(set.status.success(), "{}:\n{}", path.display(), String::from_utf8_lossy(&set.stdout));
+    }
+}
+
+/// Equations, motions and the playground have one style sheet in common, and motions one drawing.
+#[test]
+fn written_pages_share_their_style_and_drawing() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let model = root.join("models/two_sleds.mech");
+    let page = folder.path().join("motion.html");
+    let tool = || Command::new(env!("CARGO_BIN_EXE_hodograph"));
+    let equations = tool().args(["explain", "--format", "html"]).arg(&model).output().unwrap();
+    let moved =
+        tool().args(["simulate", "--until", "0.1", "--html"]).arg(&page).arg(&model).output().unwrap();
+    assert!(moved.status.success(), "{}", String::from_utf8_lossy(&moved.stderr));
+    let motion = std::fs::read_to_string(&page).unwrap();
+    let equations = String::from_utf8(equations.stdout).unwrap();
+    for text in [&equations, &motion] {
+        assert!(text.contains(hodograph_generator::page::STYLE.trim()));
+    }
+    let build = std::fs::read_to_string(root.join("playground/build.mjs")).unwrap();
+    assert!(build.contains(r#"read(root, "generator", "model", "src", "page.css")"#));
+    for script in ["geometry.js", "body.js", "motion.js"] {
+        let text = std::fs::read_to_string(root.join("simulation/animation/page").join(script)).unwrap();
+        assert!(motion.contains(text.trim()), "{script}");
+        assert!(build.contains(&format!("\"{script}\"")), "{script}");
     }
 }

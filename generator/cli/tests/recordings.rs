@@ -221,7 +221,7 @@ fn what_cannot_be_written_is_refused_at_once() {
     let text = path.display().to_string();
     let twice = simulate(ball, &[&call[..], &["--html", &text]].concat(), &path);
     assert_eq!((twice.code, twice.stdout.as_str()), (2, ""));
-    assert!(twice.stderr.contains("is to be two files"), "{}", twice.stderr);
+    assert!(twice.stderr.contains("is given for two files"), "{}", twice.stderr);
     let early = simulate(ball, &[&call[..], &["--state", r#"{"t":-1}"#]].concat(), &path);
     assert_eq!(early.code, 2);
     assert!(early.stderr.contains("between 0 and 4294967295 s"), "{}", early.stderr);

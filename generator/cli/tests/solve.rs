@@ -85,7 +85,7 @@ fn bad_lines_are_answered_and_the_next_is_solved() {
         (("v", json!(null)), "bad_json"),
         (("mu", json!("0.5")), "bad_json"),
         (("law", json!(3)), "bad_json"),
-        (("law", json!("Stronger")), "unknown_name"),
+        (("law", json!("Stronger")), "unknown_law"),
         (("mu", json!(-1)), "negative_friction"),
         (("e", json!(1.2)), "restitution_out_of_range"),
         (("e", json!(-0.1)), "restitution_out_of_range"),

@@ -250,7 +250,7 @@ fn wrong_collisions_are_named() {
         (with(1, "-1"), "negative_friction"),
         (with(1, "NaN"), "not_finite"),
         (with(3, "1.2"), "restitution_out_of_range"),
-        (with(5, "hertz"), "unknown_name"),
+        (with(5, "hertz"), "unknown_law"),
         ([&good[..], &["--contact", "AcBc"]].concat(), "unknown_name"),
         ([&good[..], &["--state", r#"{"u":{"u1":-1,"u4":-1,"u3":0,"u6":0}}"#]].concat(), "not_approaching"),
     ] {
@@ -282,8 +282,9 @@ fn impossible_masses_are_said_to_be() {
         }
         for mass in ["-3", "0"] {
             let run = hodograph(&arguments, &format!(r#"{{"parameters":{{"m":{mass}}}}}"#));
-            assert_eq!(run.error_kind(), "impossible_body");
-            assert!(run.stdout.contains(&format!("the mass of SledA is {mass}")), "{}", run.stdout);
+            assert_eq!(run.error_kind(), "impossible_mass");
+            let words = format!("the mass of `SledA` is not positive: with these parameters it is {mass}");
+            assert!(run.stdout.contains(&words), "{}", run.stdout);
         }
     }
     // the mass matrix would be positive definite all the same
@@ -291,5 +292,5 @@ fn impossible_masses_are_said_to_be() {
         &["eval", model("planar_double_pendulum").as_str(), "--state", "-"],
         r#"{"parameters":{"m2":-0.01}}"#,
     );
-    assert_eq!(run.error_kind(), "impossible_body");
+    assert_eq!(run.error_kind(), "impossible_mass");
 }

@@ -78,14 +78,14 @@ fn what_is_read_is_never_written_over() {
         &["--state", &state, "--html", &state][..],
     ] {
         let run = simulate(&model, more);
-        assert!(run.told().0 == 2 && run.stderr.contains("would be written over"), "{more:?} {}", run.stderr);
+        assert!(run.told().0 == 2 && run.stderr.contains("would overwrite"), "{more:?} {}", run.stderr);
     }
     let (page, again) = (place("new.html"), place("sub/../new.html"));
     let twice = simulate(&model, &["--html", &page, "--mcap", &again]);
-    assert!(twice.told().0 == 2 && twice.stderr.contains("is to be two files"), "{}", twice.stderr);
+    assert!(twice.told().0 == 2 && twice.stderr.contains("is given for two files"), "{}", twice.stderr);
     let drawn =
         hodograph(&["plot", &model, "--mu", "0.1", "--e", "0.5", "--format", "svg", "--output", &model], "");
-    assert!(drawn.told().0 == 2 && drawn.stderr.contains("would be written over"), "{}", drawn.stderr);
+    assert!(drawn.told().0 == 2 && drawn.stderr.contains("would overwrite"), "{}", drawn.stderr);
     assert_eq!(fs::read(&model).unwrap(), text);
     assert_eq!(fs::read(&table).unwrap(), b"t,F\n0,1\n");
     assert!(!Path::new(&page).exists());
@@ -93,7 +93,7 @@ fn what_is_read_is_never_written_over() {
     {
         std::os::unix::fs::symlink(&model, place("link.html")).unwrap();
         let run = simulate(&model, &["--html", &place("link.html")]);
-        assert!(run.told().0 == 2 && run.stderr.contains("would be written over"), "{}", run.stderr);
+        assert!(run.told().0 == 2 && run.stderr.contains("would overwrite"), "{}", run.stderr);
     }
 }
 

@@ -10,13 +10,13 @@ use super::Emitter;
 use super::values::{Place, local};
 use hodograph_program::program::operation::{Operation, Stage, Value};
 
-/// The largest number of angles that the runtime takes at once.
-const MOST: usize = 8;
+/// The largest number of angles in one call of the runtime.
+const MAX_ANGLES: usize = 8;
 
 impl Emitter<'_> {
-    /// The sine-cosine pairs among `values` that are computed together, before all else: those of angles that
-    /// no other sine or cosine enters. None where there is but one.
-    pub fn together(&self, values: &[Value]) -> Vec<Value> {
+    /// The sine-cosine pairs among `values` that are computed joint_pairs, before all else: those whose angles
+    /// contain no sine or cosine. Empty if there is only one.
+    pub fn joint_pairs(&self, values: &[Value]) -> Vec<Value> {
         let mut late: BTreeSet<Value> = BTreeSet::new();
         let mut pairs = Vec::new();
         for &value in values.iter().filter(|&&value| self.stage(value) > Stage::Parameter) {
@@ -39,7 +39,7 @@ impl Emitter<'_> {
         if pairs.len() > 1 { pairs } else { Vec::new() }
     }
 
-    /// What these pairs are computed from, in the order of `values`.
+    /// The values from which these pairs are computed, in the order of `values`.
     pub fn angles(&self, pairs: &[Value], values: &[Value]) -> Vec<Value> {
         let mut needed = BTreeSet::new();
         let mut stack: Vec<Value> =
@@ -56,7 +56,7 @@ impl Emitter<'_> {
     pub fn sines_and_cosines(&self, pairs: &[Value]) -> TokenStream {
         let krate = self.krate;
         let function = if self.inlined { quote!(sines_cosines_inlined) } else { quote!(sines_cosines) };
-        let groups = pairs.chunks(MOST).map(|group| {
+        let groups = pairs.chunks(MAX_ANGLES).map(|group| {
             if let [pair] = *group {
                 return self.statement(pair, Place::Method).unwrap_or_default();
             }

@@ -11,7 +11,7 @@ use super::values::local;
 use crate::identifiers::ident;
 use hodograph_program::program::{ContactQuantity, Quantity};
 
-/// What the mode needs of a contact beside what a collision needs.
+/// The quantities of a contact that its mode needs in addition to those of a collision.
 const NEEDED: [ContactQuantity; 2] = [ContactQuantity::FreeAcceleration, ContactQuantity::PartialVelocities];
 
 impl Emitter<'_> {
@@ -22,7 +22,7 @@ impl Emitter<'_> {
             && self.program.output(Quantity::Accelerations).is_some()
     }
 
-    /// The type of closed contacts, where there is one.
+    /// The type of closed contacts, if there is a contact whose mode can be computed.
     pub fn closed_structure(&self) -> Option<Struct> {
         (0..self.mechanism.contacts.len()).find(|&contact| self.closes(contact))?;
         let vector = |name: &str, docs: &str| Field::new(name, Type::Vector(3), docs);
@@ -74,7 +74,7 @@ impl Emitter<'_> {
         Some(Struct::of_results("ClosedContact", docs, fields))
     }
 
-    /// The type of closed contacts with what it implements.
+    /// The type of closed contacts with its trait implementations.
     pub fn closed_type(&self) -> Option<TokenStream> {
         let structure = self.closed_structure()?;
         let written = record::outcome(self.krate, &structure.name, &structure.names());
@@ -82,7 +82,7 @@ impl Emitter<'_> {
         Some(quote! { #structure #written })
     }
 
-    /// What the mode is computed from.
+    /// The quantities from which the mode is computed.
     fn closed_quantities(&self, contact: usize) -> Vec<Quantity> {
         let mut quantities = self.collision_quantities(contact);
         quantities.extend(NEEDED.map(|quantity| Quantity::Contact(contact as u32, quantity)));
@@ -93,7 +93,7 @@ impl Emitter<'_> {
         quantities
     }
 
-    /// The arguments of the mode but for the surface.
+    /// The arguments of the methods for the mode, without the surface.
     pub fn closed_arguments(&self, contact: usize) -> Arguments {
         Arguments { speeds: true, ..self.arguments(&self.closed_quantities(contact)) }
     }
@@ -118,13 +118,14 @@ impl Emitter<'_> {
         );
         let taken = self.closed_arguments(contact);
         let (private, passed) = (self.signature(taken), self.passed(taken));
-        let body = self.touching(contact);
+        let body = self.closed_contact_statements(contact);
         let (of_mode, surface) =
             (Argument { name: "mode", of: Type::Mode }, Argument { name: "surface", of: Type::Surface });
         let method = |name: String, docs: String, more: Vec<Argument>, decide: TokenStream| {
             let arguments = self.declared(taken).into_iter().chain(more).collect();
             let answer = Type::of_struct("ClosedContact");
-            let signature = Signature { name, docs, arguments, answer, failure: Failure::ClosedContact };
+            let signature =
+                Signature { name, docs, arguments, answer, failure: Failure::ClosedContact, in_place: None };
             Method {
                 signature,
                 attributes: quote!(#[inline]),
@@ -159,8 +160,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// The statements from a state to a closed contact; `decide` finds mode and force.
-    fn touching(&self, contact: usize) -> TokenStream {
+    /// The statements from a state to a closed contact; `decide` determines mode and force.
+    fn closed_contact_statements(&self, contact: usize) -> TokenStream {
         let krate = self.krate;
         let known = self.known_contact(contact);
         let [free, partial] = NEEDED.map(|quantity| {

@@ -11,7 +11,7 @@ use super::values::local;
 use hodograph_program::program::Output;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
-/// What a collision needs of its contact, in any case.
+/// The quantities of a contact that every collision needs.
 const NEEDED: [ContactQuantity; 6] = [
     ContactQuantity::Normal,
     ContactQuantity::First,
@@ -24,10 +24,11 @@ const NEEDED: [ContactQuantity; 6] = [
 impl Emitter<'_> {
     /// Whether the collision of this contact can be computed.
     pub fn collides(&self, contact: usize) -> bool {
-        NEEDED.iter().all(|&quantity| self.contact_output(contact, quantity).is_some())
+        !self.is_feature(contact)
+            && NEEDED.iter().all(|&quantity| self.contact_output(contact, quantity).is_some())
     }
 
-    /// The type of solved collisions, where there is a contact.
+    /// The type of solved collisions, if there is a contact with collisions.
     pub fn collision_structure(&self) -> Option<Struct> {
         (0..self.mechanism.contacts.len()).find(|&contact| self.collides(contact))?;
         let vector = |name: &str, docs: &str| Field::new(name, Type::Vector(3), docs);
@@ -68,7 +69,7 @@ impl Emitter<'_> {
         Some(Struct::of_results("Collision", docs, fields))
     }
 
-    /// The type of solved collisions with what it implements.
+    /// The type of solved collisions with its trait implementations.
     pub fn collision_type(&self) -> Option<TokenStream> {
         let krate = self.krate;
         let structure = self.collision_structure()?;
@@ -99,7 +100,7 @@ impl Emitter<'_> {
         })
     }
 
-    /// What a collision is computed from.
+    /// The quantities from which a collision is computed.
     pub fn collision_quantities(&self, contact: usize) -> Vec<Quantity> {
         let index = contact as u32;
         let mut quantities: Vec<Quantity> =
@@ -116,12 +117,12 @@ impl Emitter<'_> {
         quantities
     }
 
-    /// The arguments of a collision but for the surface.
+    /// The arguments of a collision, without the surface.
     pub fn collision_arguments(&self, contact: usize) -> Arguments {
         Arguments { speeds: true, ..self.arguments(&self.collision_quantities(contact)) }
     }
 
-    /// What the runtime reads of a contact, as an expression of its `Contact`.
+    /// The quantities of a contact that the runtime reads, as an expression of the type `Contact`.
     pub fn known_contact(&self, contact: usize) -> TokenStream {
         let krate = self.krate;
         let vector = |quantity: ContactQuantity| match self.contact_output(contact, quantity) {
@@ -151,7 +152,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The values of a quantity, each more by its response times `i0`, `i1`, `i2`.
+    /// The values of a quantity, each increased by its response times the impulse `i0`, `i1`, `i2`.
     pub fn changed(
         &self,
         quantity: Quantity,
@@ -163,7 +164,7 @@ impl Emitter<'_> {
         Some(self.after(before, self.contact_output(contact, response)))
     }
 
-    /// `collide_..` and `impact_without_collision_..`, and the routine that they share.
+    /// The methods `collide_..` and `impact_without_collision_..`, and the routine that they share.
     pub fn collide(&self, contact: usize) -> Group {
         let krate = self.krate;
         let words = self.contact_words(contact);
@@ -186,12 +187,13 @@ impl Emitter<'_> {
         };
         let taken = self.collision_arguments(contact);
         let (private, passed) = (self.signature(taken), self.passed(taken));
-        let body = self.struck(contact, &quote!(resolve(&contact)));
+        let body = self.collision_statements(contact, &quote!(resolve(&contact)));
         let method = |name: String, docs: String, resolve: TokenStream| {
             let mut arguments = self.declared(taken);
             arguments.push(Argument { name: "surface", of: Type::BudgetedSurface });
             let answer = Type::of_struct("Collision");
-            let signature = Signature { name, docs, arguments, answer, failure: Failure::Collision };
+            let signature =
+                Signature { name, docs, arguments, answer, failure: Failure::Collision, in_place: None };
             let body = quote!(Self::#shared(self, #passed |contact| #resolve(contact, surface)));
             Method { signature, attributes: quote!(#[inline]), body }
         };
@@ -212,7 +214,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The closed form that the symbols of the reduced matrix allow.
+    /// The type of the closed-form solution that the structure of the reduced matrix allows.
     pub fn structure(&self, contact: usize) -> Option<TokenStream> {
         match self.program.structures.get(contact) {
             Some(Structure::Planar) => Some(quote!(Planar)),
@@ -223,9 +225,9 @@ impl Emitter<'_> {
         }
     }
 
-    /// The statements from a state to a solved collision; `solved` is the expression that solves that of
-    /// `contact`.
-    pub fn struck(&self, contact: usize, solved: &TokenStream) -> TokenStream {
+    /// The statements from a state to a solved collision; `solved` is the expression that solves the
+    /// collision of `contact`.
+    pub fn collision_statements(&self, contact: usize, solved: &TokenStream) -> TokenStream {
         let known = self.known_contact(contact);
         let speeds: Vec<TokenStream> = self.speeds.fields().map(|field| quote!(u.#field)).collect();
         let speeds = self.after(speeds, self.contact_output(contact, ContactQuantity::Response));

@@ -103,7 +103,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The mechanism as a constant, where nothing is left to compute at run time.
+    /// The mechanism as a constant, if no value is left to compute at run time.
     fn constant(&self) -> Option<TokenStream> {
         let name = &self.name;
         let known = self.parameters.is_empty() && self.hoisted.is_empty();
@@ -129,8 +129,8 @@ impl Emitter<'_> {
         quote! { #statements [#(#krate::generated::construction::rounded(#values)),*] }
     }
 
-    /// Statements that compute values which depend on parameters alone, in twice the digits: what all results
-    /// share has but one rounding.
+    /// Statements that compute the values that depend on parameters alone, in double-double arithmetic: they
+    /// enter all results and are rounded only once.
     fn at_construction(&self, values: &[Value]) -> TokenStream {
         let mut needed = BTreeSet::new();
         let mut stack = values.to_vec();

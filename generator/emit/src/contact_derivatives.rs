@@ -1,4 +1,5 @@
-//! Emits what a collision is made of together with its derivatives by the state, in one routine.
+//! Emits a routine for the quantities of a collision together with their derivatives with respect to the
+//! state.
 
 use std::ops::Range;
 
@@ -12,7 +13,7 @@ use super::values::local;
 use hodograph_program::program::{ContactQuantity, Output};
 
 impl Emitter<'_> {
-    /// The record of a contact with its derivatives; nothing where no contact has them.
+    /// The struct of a contact with its derivatives; `None` if no contact has them.
     pub fn contact_derivatives_record(&self) -> Option<Struct> {
         let mut contacts = 0..self.mechanism.contacts.len();
         contacts.find(|&contact| self.contact_derivatives(contact).is_some())?;

@@ -1,7 +1,7 @@
 //! Emits the methods of a contact: gap, velocities, reduced matrix, and those of `collisions` and `closed`.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::Emitter;
 use super::interface::{Group, Type};
@@ -9,7 +9,7 @@ use super::methods::about;
 use super::record::number;
 use super::routine::Routine;
 use super::values::local;
-use hodograph_model::model::mechanism::{Law, Surface};
+use hodograph_model::model::mechanism::Surface;
 use hodograph_program::program::quantity::table::CONTACT;
 use hodograph_program::program::{ContactQuantity, Output, Quantity};
 
@@ -25,6 +25,13 @@ impl Emitter<'_> {
     }
 
     fn contact(&self, contact: usize) -> Vec<Group> {
+        if self.is_feature(contact) {
+            return self
+                .surface(contact)
+                .map(|private| Group { private, ..Group::default() })
+                .into_iter()
+                .collect();
+        }
         let routines = self.contact_routines(contact);
         let methods = routines.iter().map(|routine| self.routine(routine)).collect();
         let mut groups = vec![Group { methods, ..Group::default() }];
@@ -35,7 +42,7 @@ impl Emitter<'_> {
         groups
     }
 
-    /// Friction and restitution, where the model states them.
+    /// The method that returns the surface that the model states, if it states one.
     fn surface(&self, contact: usize) -> Option<TokenStream> {
         let krate = self.krate;
         let stated = self.mechanism.contacts.get(contact)?;
@@ -45,11 +52,7 @@ impl Emitter<'_> {
             " Friction and restitution that the model states for {}.",
             about(&stated.name, &stated.docs)
         );
-        let law = match law {
-            Law::Newton => quote!(Newton),
-            Law::Poisson => quote!(Poisson),
-            Law::Stronge => quote!(Stronge),
-        };
+        let law = format_ident!("{}", crate::law_variant(law));
         let [mu, e] = [mu, e].map(|value| number(krate, value));
         Some(quote! {
             #[doc = #docs]
@@ -61,8 +64,11 @@ impl Emitter<'_> {
         })
     }
 
-    /// The routines of a contact but for its derivatives.
+    /// The routines of a contact without those of its derivatives.
     pub fn contact_routines(&self, contact: usize) -> Vec<Routine> {
+        if self.is_feature(contact) {
+            return Vec::new();
+        }
         let queries = CONTACT.iter().filter_map(|&(quantity, _)| {
             let output = self.contact_output(contact, quantity)?;
             let (name, docs) = self.describe(output.quantity)?;
@@ -78,7 +84,7 @@ impl Emitter<'_> {
         queries.chain(several.into_iter().flatten()).collect()
     }
 
-    /// What the state of a contact is made of.
+    /// The quantities of the state of a contact.
     pub fn contact_state_quantities(&self, contact: usize) -> Vec<Quantity> {
         let all = [
             ContactQuantity::Gap,
@@ -94,7 +100,7 @@ impl Emitter<'_> {
             .collect()
     }
 
-    /// Gap, basis, velocity and reduced matrix at once.
+    /// Gap, basis, velocity and reduced matrix in one routine.
     fn contact_state(&self, contact: usize) -> Option<Routine> {
         let krate = self.krate;
         let reduced = self.reduced(self.contact_output(contact, ContactQuantity::Reduced)?);
@@ -173,7 +179,7 @@ impl Emitter<'_> {
         Some(Routine { name, docs, quantities: vec![output.quantity], answer: Type::Reduced, value })
     }
 
-    /// Both at once, for what they share.
+    /// Partial velocities and reduced matrix in one routine, since they share values.
     fn contact_matrices(&self, contact: usize) -> Option<Routine> {
         let partial = self.contact_output(contact, ContactQuantity::PartialVelocities)?;
         let reduced = self.contact_output(contact, ContactQuantity::Reduced)?;

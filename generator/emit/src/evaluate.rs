@@ -1,14 +1,14 @@
-//! Emits one method for a set of quantities that the user chooses: what they have in common is computed once.
+//! Emits one method for a set of quantities that the user chooses; values that they share are computed once.
 //!
-//! A set names routines of the module. Equal operations of their quantities are one value of the program, so
-//! that one routine for all of them computes it once.
+//! A set names routines of the module. Equal operations of their quantities are the same value of the
+//! program, so that a single routine for all of them computes it once.
 
 use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-use super::interface::{Failure, Field, Method, Signature, Struct, Type};
+use super::interface::{Failure, Field, InPlace, Method, Signature, Struct, Type};
 use super::routine::Routine;
 use super::{Emitter, Requests};
 use crate::identifiers::{RECORDS, ident, pascal_case};
@@ -16,20 +16,20 @@ use hodograph_model::rust_names::is_keyword;
 use hodograph_model::suggest::nearest;
 use hodograph_program::program::Quantity;
 
-/// So many names are listed where none is near.
-const LISTED: usize = 16;
+/// The largest number of names in a message about an unknown name.
+const MAX_LISTED: usize = 16;
 
 /// A set of quantities: `evaluate control(mass_matrix, forcing)`.
 #[derive(Clone, Debug)]
 pub struct Set {
     /// the name of its method
     pub name: Ident,
-    /// the names of the methods whose answers it gives
+    /// the names of the methods whose results it returns
     pub quantities: Vec<Ident>,
 }
 
 impl Set {
-    /// The name of the type of its answer: that of the method in `PascalCase`.
+    /// The name of the type of its result: that of the method in `PascalCase`.
     pub fn type_name(&self) -> String {
         pascal_case(&self.name.to_string())
     }
@@ -87,17 +87,15 @@ impl Emitter<'_> {
             arguments: self.declared(self.arguments(&quantities)),
             answer: Type::of_struct(&of_type),
             failure: Failure::State,
+            in_place: Some(InPlace::of(&name.to_string())),
         };
-        let (compute, record) = (self.compute(&quantities), format_ident!("{of_type}"));
-        let body = quote! {
-            #compute
-            ::core::result::Result::Ok(#record { #(#names: #values),* })
-        };
+        let record = format_ident!("{of_type}");
+        let body = self.compute_and_put(&quantities, &quote!(#record { #(#names: #values),* }));
         let structure = Struct::of_results(&of_type, &about, fields);
         (structure, Method { signature, attributes: quote!(#[inline]), body })
     }
 
-    /// What is wrong with requests.
+    /// The mistakes in requests.
     pub fn mistakes_of(&self, requests: &Requests) -> Vec<(Span, String)> {
         let Requests { sets, specialised } = requests;
         if sets.is_empty() && specialised.is_empty() {
@@ -138,20 +136,20 @@ impl Emitter<'_> {
         found
     }
 
-    /// What is wrong with the name of a method, which `what` asks for.
+    /// The mistake in the name of a method, if any; `what` is the kind of the request.
     fn method_mistake(&self, name: &Ident, taken: &BTreeSet<String>, what: &str) -> Option<String> {
         let (name, machine) = (name.to_string(), &self.name);
         let starts_well = pascal_case(&name).starts_with(|c: char| c.is_alphabetic());
         if is_keyword(&name) || name.starts_with("r#") || !starts_well {
             Some(format!("`{name}` cannot be the name of a method: choose another name for the {what}"))
-        } else if taken.contains(&name) {
+        } else if taken.contains(&name) || taken.contains(&format!("{name}_into")) {
             Some(format!("`{machine}` has a method `{name}` already: choose another name for the {what}"))
         } else {
             None
         }
     }
 
-    /// What is wrong with the name of a set.
+    /// The mistake in the name of a set, if any.
     fn name_mistake(&self, set: &Set, before: &[Set], taken: &BTreeSet<String>) -> Option<String> {
         let (name, of_type) = (set.name.to_string(), set.type_name());
         let records = RECORDS.contains(&of_type.as_str()) || self.name == of_type;
@@ -161,19 +159,25 @@ impl Emitter<'_> {
             Some(format!(
                 "the set `{name}` gives a struct `{of_type}`, and the module has a type of this name already: choose another name"
             ))
-        } else if before.iter().any(|other| other.name == set.name || other.type_name() == of_type) {
+        } else if before.iter().any(|other| {
+            let other_name = other.name.to_string();
+            let both = [(&name, &other_name), (&other_name, &name)];
+            other.name == set.name
+                || other.type_name() == of_type
+                || both.iter().any(|(one, other)| **one == format!("{other}_into"))
+        }) {
             Some(format!("there is a set `{name}` already: each set is a method with a name of its own"))
         } else {
             None
         }
     }
 
-    /// What is said of a name that no routine has.
+    /// The message about a name that no routine has.
     fn unknown(&self, name: &str, routines: &BTreeSet<String>, taken: &BTreeSet<String>) -> String {
         let machine = &self.name;
         if taken.contains(name) {
             return format!(
-                "`{name}` cannot be in a set: it is not a quantity of one state alone, or is put together from others; call the method by itself"
+                "`{name}` cannot be in a set: it is not a quantity of one state alone, or is computed from others; call the method by itself"
             );
         }
         // `reduced_matrix` for `reduced_matrix_tip`
@@ -184,8 +188,8 @@ impl Emitter<'_> {
             Some(meant) => format!("`{machine}` has no quantity `{name}`; did you mean `{meant}`?"),
             None => {
                 let listed: Vec<String> =
-                    routines.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
-                let more = routines.len().saturating_sub(LISTED);
+                    routines.iter().take(MAX_LISTED).map(|name| format!("`{name}`")).collect();
+                let more = routines.len().saturating_sub(MAX_LISTED);
                 let more = if more > 0 { format!(" and {more} more") } else { String::new() };
                 format!(
                     "`{machine}` has no quantity `{name}`; a set takes the names of methods that give quantities of one state: {}{more}",

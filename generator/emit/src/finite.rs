@@ -1,8 +1,8 @@
 //! Emits the check that results are finite.
 //!
-//! A sum, difference or product of a number that is not finite is not finite either, nor is a quotient with
-//! such a dividend. A result that enters another result through such operations alone needs no check of its
-//! own: the rate of a joint enters the rates of all joints that it carries.
+//! A sum, difference or product with an operand that is not finite is not finite either, nor is a quotient
+//! with such a dividend. A result that enters another result through such operations alone needs no check of
+//! its own: for example, the rate of a joint enters the rates of all joints that it carries.
 
 use std::collections::BTreeSet;
 
@@ -15,8 +15,8 @@ use super::values::local;
 use hodograph_program::program::operation::{Operation, Stage, Value};
 
 impl Emitter<'_> {
-    /// The expression that tells whether a result is not finite, those of loops too; nothing where constants
-    /// are all there is.
+    /// The expression for whether a result, including those of loops, is not finite; `None` if all results
+    /// are constants.
     pub fn not_finite(&self, results: &BTreeSet<Value>, lanes: &[Lanes]) -> Option<TokenStream> {
         let krate = self.krate;
         let ends = self.ends(results);
@@ -43,10 +43,10 @@ impl Emitter<'_> {
         }
     }
 
-    /// The results that are finite only if all are.
+    /// The results that are finite only if all results are.
     fn ends(&self, results: &BTreeSet<Value>) -> BTreeSet<Value> {
         let mut ends = BTreeSet::new();
-        // Operands are earlier values: whatever a result enters has been looked at before it.
+        // Operands are earlier values, so everything that a result enters has been visited before it.
         let mut entered: BTreeSet<Value> = BTreeSet::new();
         for &result in results.iter().rev().filter(|&&value| self.stage(value) > Stage::Parameter) {
             if entered.contains(&result) {
@@ -56,7 +56,8 @@ impl Emitter<'_> {
             let mut stack = vec![result];
             while let Some(value) = stack.pop() {
                 stack.extend(
-                    passed_on(self.program.operation(value)).filter(|&operand| entered.insert(operand)),
+                    operands_that_must_be_finite(self.program.operation(value))
+                        .filter(|&operand| entered.insert(operand)),
                 );
             }
         }
@@ -64,8 +65,8 @@ impl Emitter<'_> {
     }
 }
 
-/// The operands without which a value that is finite cannot be.
-fn passed_on(operation: Operation) -> impl Iterator<Item = Value> {
+/// The operands that must be finite for the value to be finite.
+fn operands_that_must_be_finite(operation: Operation) -> impl Iterator<Item = Value> {
     use Operation::*;
     let known = match operation {
         // An infinite divisor gives zero; functions may have limits.

@@ -5,7 +5,7 @@ use quote::quote;
 
 use hodograph_model::rust_names::is_keyword;
 
-/// The types of a generated module beside the mechanism's own.
+/// The types of a generated module besides that of the mechanism.
 pub const RECORDS: &[&str] = &[
     "Parameters",
     "Coordinates",
@@ -20,8 +20,8 @@ pub const RECORDS: &[&str] = &[
     "Linearisation",
 ];
 
-/// What else has a meaning in generated code.
-const TAKEN: &[&str] = &["T", "Result", "Ok", "Err"];
+/// Other names with a meaning in generated code.
+const RESERVED: &[&str] = &["T", "Result", "Ok", "Err"];
 
 /// `two_sleds` -> `TwoSleds`; capitals stay.
 pub fn pascal_case(name: &str) -> String {
@@ -34,15 +34,15 @@ pub fn pascal_case(name: &str) -> String {
     pascal
 }
 
-/// The name of the mechanism's type: not one of the others of its module.
+/// The name of the mechanism's type, which differs from those of the other types of its module.
 pub fn type_name(mechanism: &str) -> String {
     let name = pascal_case(mechanism);
     let starts_well = name.starts_with(|c: char| c.is_alphabetic());
-    let taken = [RECORDS, TAKEN].concat().contains(&name.as_str());
+    let taken = [RECORDS, RESERVED].concat().contains(&name.as_str());
     if taken || is_keyword(&name) || !starts_well { format!("{name}Mechanism") } else { name }
 }
 
-/// An identifier, raw where it is a keyword. What is no identifier becomes one.
+/// An identifier, raw if it is a keyword. Any text is converted to a valid identifier.
 pub fn ident(name: &str) -> Ident {
     let mut clean: String =
         name.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();
@@ -63,20 +63,20 @@ pub fn docs(text: &str) -> TokenStream {
     quote! { #(#[doc = #lines])* }
 }
 
-/// An author's words as rustdoc is to show them. What is indented, or fenced without a language, is no Rust:
-/// left as it is, `cargo test` would compile it as an example.
+/// An author's text as documentation for rustdoc. Indented text and fenced blocks without a language are not
+/// Rust, but `cargo test` would compile them as examples; they are changed accordingly.
 pub fn prose(text: &str) -> String {
     let mut fenced = false;
     let line = |line: &str| {
         let fence = line.trim_start().starts_with("```");
         let opens = fence && !fenced;
-        // inside of a fence blanks are layout, outside they would make a block of code
+        // Inside a fence, blanks are layout; outside, they would start a code block.
         let line = if fenced && !fence { line } else { line.trim_start() };
         fenced ^= fence;
         if opens && line.trim_end() == "```" { "```text".to_owned() } else { line.trim_end().to_owned() }
     };
     let mut lines: Vec<String> = text.trim().lines().map(line).collect();
-    // a fence that is never closed would swallow what follows
+    // An unclosed fence would extend to the text after it.
     if fenced {
         lines.push("```".to_owned());
     }

@@ -1,12 +1,12 @@
-//! What a generated module offers, as data: its structs, and its methods with the types of what they take and
-//! give. The Rust text and the interfaces of other languages are made from it.
+//! The interface of a generated module as data: its structs, and its methods with the types of their
+//! arguments and results. The Rust text and the interfaces of other languages are made from it.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::identifiers::{docs, ident};
 
-/// What a module offers.
+/// The interface of a module.
 #[derive(Clone, Debug)]
 pub struct Interface {
     /// name of the module
@@ -15,9 +15,9 @@ pub struct Interface {
     pub mechanism: String,
     /// documentation of the module
     pub docs: String,
-    /// how many numbers the type of the mechanism holds
+    /// number of scalars in the type of the mechanism
     pub numbers: usize,
-    /// the structs that methods take and give
+    /// the structs that methods take and return
     pub structures: Vec<Struct>,
     /// the methods of the mechanism's type that take `&self`
     pub methods: Vec<Signature>,
@@ -32,14 +32,14 @@ pub struct Struct {
     pub docs: String,
     /// its fields, in order
     pub fields: Vec<Field>,
-    /// whether the model states a value of it: it implements `Default`
+    /// whether the model states values for it, so that it implements `Default`
     pub stated: bool,
 }
 
 /// A field of a struct.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// its name, in Rust raw where it is a keyword
+    /// its name, in Rust raw if it is a keyword
     pub name: String,
     /// its documentation
     pub docs: String,
@@ -47,22 +47,34 @@ pub struct Field {
     pub of: Type,
 }
 
-/// A method but for its body.
+/// A method without its body.
 #[derive(Clone, Debug)]
 pub struct Signature {
-    /// its name, in Rust raw where it is a keyword
+    /// its name, in Rust raw if it is a keyword
     pub name: String,
     /// its documentation
     pub docs: String,
-    /// what it takes after `&self`
+    /// its arguments after `&self`
     pub arguments: Vec<Argument>,
-    /// what it gives where it does not fail
+    /// the type of its result
     pub answer: Type,
-    /// how it fails
+    /// its error
     pub failure: Failure,
+    /// the methods that share its body, if the answer is long
+    pub in_place: Option<InPlace>,
 }
 
-/// An argument of a method. Numbers and enums are handed over by value, all else by reference.
+/// The methods of a routine with a long answer. The body is that of a private method: it hands the answer to
+/// a function `put`, and returns what that makes of it: the answer itself, or nothing once it is stored.
+#[derive(Clone, Debug)]
+pub struct InPlace {
+    /// the private method with the body
+    pub put: Ident,
+    /// the method that stores the answer in its last argument, `out`
+    pub into: Ident,
+}
+
+/// An argument of a method. Numbers and enums are passed by value, others by reference.
 #[derive(Clone, Debug)]
 pub struct Argument {
     /// its name
@@ -82,16 +94,16 @@ pub enum Failure {
     ClosedContact,
 }
 
-/// The type of a field, an argument or an answer.
+/// The type of a field, an argument or a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Type {
     /// a number
     Number,
-    /// so many values
+    /// a fixed number of values
     Array(Box<Type>, usize),
-    /// a column of so many numbers
+    /// a column vector
     Vector(usize),
-    /// a matrix of so many rows and columns
+    /// a matrix: numbers of rows and columns
     Matrix(usize, usize),
     /// two values
     Pair(Box<Type>, Box<Type>),
@@ -105,7 +117,7 @@ pub enum Type {
     ContactState,
     /// friction and restitution
     Surface,
-    /// the same, with a budget of quadratures or without
+    /// a surface, with or without a budget of quadratures
     BudgetedSurface,
     /// the law of restitution
     Law,
@@ -115,20 +127,20 @@ pub enum Type {
     Impact,
     /// its derivative
     ImpactDerivative,
-    /// a saltation matrix of so many states
+    /// a saltation matrix with this number of states
     Saltation(usize),
-    /// what a closed contact does
+    /// the mode of a closed contact
     Mode,
     /// whether other modes fit
     Selection,
-    /// how far the mode is from its end
+    /// the margins of the mode
     Margins,
     /// mode and force in the type that all mechanisms share
     ContactOutcome,
 }
 
 impl Type {
-    /// Numbers in rows and columns: a vector where there is one column of several numbers.
+    /// Numbers in rows and columns: a vector if there is one column of several numbers.
     pub fn of_shape(rows: usize, columns: usize) -> Self {
         if columns == 1 && rows != 1 { Self::Vector(rows) } else { Self::Matrix(rows, columns) }
     }
@@ -138,12 +150,12 @@ impl Type {
         Self::Struct(name.to_owned())
     }
 
-    /// Whether arguments of this type are handed over by value.
+    /// Whether arguments of this type are passed by value.
     fn is_small(&self) -> bool {
         matches!(self, Self::Number | Self::Law | Self::Mode)
     }
 
-    /// How Rust writes it.
+    /// The Rust type.
     pub fn tokens(&self, krate: &TokenStream) -> TokenStream {
         let size = |number: &usize| Literal::usize_unsuffixed(*number);
         match self {
@@ -195,7 +207,7 @@ impl Type {
 }
 
 impl Failure {
-    /// The error in Rust.
+    /// The Rust type of the error.
     pub fn tokens(self, krate: &TokenStream) -> TokenStream {
         match self {
             Self::State => quote!(#krate::StateError),
@@ -223,7 +235,7 @@ impl Struct {
         self.fields.iter().map(|field| field.name.as_str()).collect()
     }
 
-    /// The struct in Rust, after these attributes.
+    /// The struct in Rust, with these attributes.
     pub fn tokens(&self, krate: &TokenStream, attributes: &TokenStream) -> TokenStream {
         let (name, about) = (format_ident!("{}", self.name), docs(&self.docs));
         let fields = self.fields.iter().map(|field| {
@@ -241,7 +253,7 @@ impl Struct {
 }
 
 impl Signature {
-    /// What it answers in Rust.
+    /// The Rust type of its result.
     pub fn result(&self, krate: &TokenStream) -> TokenStream {
         let (answer, failure) = (self.answer.tokens(krate), self.failure.tokens(krate));
         quote!(::core::result::Result<#answer, #failure>)
@@ -260,7 +272,7 @@ pub fn declared(arguments: &[Argument], krate: &TokenStream) -> TokenStream {
 
 /// A method: its signature, attributes and body.
 pub struct Method {
-    /// what stands before the body
+    /// the signature
     pub signature: Signature,
     /// such as `#[inline]`
     pub attributes: TokenStream,
@@ -268,16 +280,56 @@ pub struct Method {
     pub body: TokenStream,
 }
 
+impl InPlace {
+    /// Those of the routine of this name. The names of others begin with that of a quantity: none is
+    /// `put_..`.
+    pub fn of(name: &str) -> Self {
+        let name = name.trim_start_matches("r#");
+        Self { put: format_ident!("put_{name}"), into: format_ident!("{name}_into") }
+    }
+}
+
 impl Method {
-    /// The method in Rust.
+    /// The method in Rust, with those that share its body.
     pub fn tokens(&self, krate: &TokenStream) -> TokenStream {
         let Method { signature, attributes, body } = self;
         let (name, about) = (ident(&signature.name), docs(&signature.docs));
         let (arguments, result) = (declared(&signature.arguments, krate), signature.result(krate));
+        let Some(InPlace { put, into }) = &signature.in_place else {
+            return quote! {
+                #about
+                #attributes
+                pub fn #name(&self, #arguments) -> #result { #body }
+            };
+        };
+        let passed: Vec<Ident> =
+            signature.arguments.iter().map(|argument| format_ident!("{}", argument.name)).collect();
+        let (answer, failure) = (signature.answer.tokens(krate), signature.failure.tokens(krate));
+        let in_place = docs(&format!(
+            "[`Self::{name}`] in place: the answer is stored in `out` without a copy. After an error `out` may hold anything."
+        ));
         quote! {
             #about
+            #[inline]
+            pub fn #name(&self, #arguments) -> #result {
+                self.#put(#(#passed,)* ::core::result::Result::Ok)
+            }
+            #in_place
+            #[inline]
+            pub fn #into(&self, #arguments out: &mut #answer) -> ::core::result::Result<(), #failure> {
+                self.#put(#(#passed,)* |value| {
+                    *out = value;
+                    ::core::result::Result::Ok(())
+                })
+            }
             #attributes
-            pub fn #name(&self, #arguments) -> #result { #body }
+            fn #put<R: ::core::marker::Copy>(
+                &self,
+                #arguments
+                put: impl ::core::ops::FnOnce(#answer) -> ::core::result::Result<R, #failure>,
+            ) -> ::core::result::Result<R, #failure> {
+                #body
+            }
         }
     }
 }
@@ -287,12 +339,12 @@ impl Method {
 pub struct Group {
     /// the methods
     pub methods: Vec<Method>,
-    /// what they call, or what is no method
+    /// private functions and other items
     pub private: TokenStream,
 }
 
 impl Group {
-    /// Its tokens in Rust.
+    /// The items in Rust.
     pub fn tokens(&self, krate: &TokenStream) -> TokenStream {
         let methods = self.methods.iter().map(|method| method.tokens(krate));
         let private = &self.private;

@@ -1,10 +1,10 @@
-//! Emits the columns of a matrix that are computed by the same operations as one loop, so that vector
-//! instructions take several columns at a time.
+//! Emits the columns of a matrix that are computed by the same operations as a single loop, so that vector
+//! instructions compute several columns at a time.
 //!
-//! Columns that solve equations with one factor differ in their right sides alone. Such operations are found
-//! from the results backwards, in step with those of another column: each has a factor that all columns
-//! share, and other operands of its own. Every entry is computed by its own operations in their order, and so
-//! the bits are those of the program.
+//! Columns that solve equations with the same factor differ only in their right sides. Such operations are
+//! found from the results backwards, in parallel with those of another column: each has a factor that all
+//! columns share, and other operands of its own. Every entry is computed by its own operations in their
+//! order, so the bits are those of the program.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,24 +17,24 @@ use super::values::local;
 use hodograph_program::program::Output;
 use hodograph_program::program::operation::{Operation, Stage, Value};
 
-/// Columns are taken in multiples of this: so many doubles are in a vector register.
+/// The number of columns of a loop is a multiple of this: the doubles of a vector register.
 const WIDTH: usize = 4;
-/// Instructions that a loop must save, by the estimate of [`Lanes::saves`].
-const WORTH: usize = 100;
+/// The least number of instructions that a loop must save, by the estimate of [`Lanes::saves`].
+const MIN_SAVING: usize = 100;
 
-/// Operations that several columns do alike. A list of values has one for each column.
+/// Operations that several columns have in common. Each list of values has one value per column.
 pub struct Lanes {
-    /// the operations in their order
+    /// the operations, in order
     steps: Vec<Vec<Value>>,
-    /// operands that each column has for itself
+    /// operands that differ between columns
     given: Vec<Vec<Value>>,
     /// operands that all columns share
     shared: Vec<Value>,
-    /// steps that are results
+    /// indices of the steps that are results
     made: Vec<usize>,
 }
 
-/// An operation of a column: which it is, the factor that all columns share, and the operands of its own.
+/// An operation of a column: its kind, the factor that all columns share, and its own operands.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Step {
     kind: ComponentKind,
@@ -49,7 +49,7 @@ enum ComponentKind {
     NegMulAdd,
 }
 
-/// Which columns need a value.
+/// The columns that need a value.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Owner {
     Nobody,
@@ -57,7 +57,7 @@ enum Owner {
     Several,
 }
 
-/// How the operations of an output depend on each other.
+/// The dependencies between the operations of an output.
 struct Columns<'a> {
     emitter: &'a Emitter<'a>,
     output: &'a Output,
@@ -66,8 +66,8 @@ struct Columns<'a> {
 }
 
 impl Emitter<'_> {
-    /// What of an output that needs the values `order` is computed in loops. `checked` are values that others
-    /// look at.
+    /// The parts of an output, which needs the values `order`, that are computed in loops. `checked` are
+    /// values that guards use.
     pub fn lanes(&self, output: &Output, order: &[Value], checked: &BTreeSet<Value>) -> Vec<Lanes> {
         let columns = Columns::new(self, output, order, checked);
         let mut left: Vec<usize> = (0..output.columns).collect();
@@ -75,7 +75,7 @@ impl Emitter<'_> {
         while let Some(&first) = left.first() {
             let (members, lanes) = columns.group(first, &left);
             left.retain(|column| !members.contains(column));
-            found.extend(lanes.filter(|lanes| lanes.saves() >= WORTH));
+            found.extend(lanes.filter(|lanes| lanes.saves() >= MIN_SAVING));
         }
         found
     }
@@ -104,7 +104,7 @@ impl<'a> Columns<'a> {
         self.owners.get(&value).copied().unwrap_or(Owner::Nobody)
     }
 
-    /// The operation as one that other columns may do too.
+    /// The operation in a form that other columns may share.
     fn step(&self, value: Value) -> Option<Step> {
         let Owner::Column(_) = self.owner(value) else { return None };
         if self.emitter.stage(value) <= Stage::Parameter {
@@ -124,7 +124,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// The operations of one column with those of another that are alike.
+    /// The operations of one column, with the corresponding ones of another.
     fn alike(&self, first: usize, second: usize) -> BTreeMap<Value, Value> {
         let mut pairs = BTreeMap::new();
         let mut stack: Vec<(Value, Value)> = self.roots(first).zip(self.roots(second)).collect();
@@ -144,7 +144,7 @@ impl<'a> Columns<'a> {
         self.output.values.iter().skip(column).step_by(self.output.columns).copied()
     }
 
-    /// The columns that do with the first what is worth most together, and what that is.
+    /// The columns for which a loop together with the first saves most, and that loop.
     fn group(&self, first: usize, left: &[usize]) -> (Vec<usize>, Option<Lanes>) {
         let others = left.iter().filter(|&&column| column != first);
         let mut others: Vec<_> = others.map(|&column| (column, self.alike(first, column))).collect();
@@ -154,12 +154,12 @@ impl<'a> Columns<'a> {
         for (column, more) in others {
             members.push(column);
             pairs.push(more);
-            let lanes = self.together(first, &members, &pairs);
+            let lanes = self.common_operations(first, &members, &pairs);
             let saves = lanes.as_ref().map_or(0, Lanes::saves);
             if saves > saved {
                 (saved, best) = (saves, lanes);
             } else if saved > 0 {
-                // what is no better may become better with the next ones, up to a full register
+                // A loop that is no better may become better with further columns, up to a full register.
                 let more = members.len() - best.as_ref().map_or(0, Lanes::columns);
                 if more >= WIDTH {
                     break;
@@ -170,8 +170,13 @@ impl<'a> Columns<'a> {
         (members, best)
     }
 
-    /// The operations that all members do, results and what only such operations use.
-    fn together(&self, first: usize, members: &[usize], pairs: &[BTreeMap<Value, Value>]) -> Option<Lanes> {
+    /// The operations that all members share: results, and operations that only such operations use.
+    fn common_operations(
+        &self,
+        first: usize,
+        members: &[usize],
+        pairs: &[BTreeMap<Value, Value>],
+    ) -> Option<Lanes> {
         let mut steps: BTreeMap<Value, Vec<Value>> = BTreeMap::new();
         let common =
             pairs.first()?.keys().copied().filter(|value| pairs.iter().all(|p| p.contains_key(value)));
@@ -183,7 +188,7 @@ impl<'a> Columns<'a> {
                 let users = self.users.get(value).map_or(&[][..], Vec::as_slice);
                 users.iter().all(|user| steps.values().any(|step: &Vec<Value>| step[lane] == *user))
             });
-            // A result must be one at the same place in all columns, since it is looked up there.
+            // A result must be one at the same place in all columns, since it is stored there.
             let places = |lane: usize, value: Value| -> Vec<bool> {
                 roots.get(lane).into_iter().flatten().map(|&root| root == value).collect()
             };
@@ -229,7 +234,7 @@ fn add(owners: &mut BTreeMap<Value, Owner>, value: Value, owner: Owner) {
 }
 
 impl Lanes {
-    /// Whether every column has the operands that the first has, at the same places.
+    /// Whether the operands of every column correspond to those of the first.
     fn is_consistent(&self, columns: &Columns<'_>) -> bool {
         let own = |value: Value| columns.step(value).map_or([None; 2], |step| step.own);
         let lists = || self.steps.iter().chain(&self.given);
@@ -243,13 +248,13 @@ impl Lanes {
         })
     }
 
-    /// How many columns there are.
+    /// Number of columns.
     fn columns(&self) -> usize {
         self.steps.first().map_or(0, Vec::len)
     }
 
-    /// Estimate of the instructions saved: an operation for itself takes two with what it moves, one in a
-    /// loop is done once for every four columns.
+    /// Estimate of the saved instructions: a single operation takes two instructions including moves; an
+    /// operation of a loop takes one for every four columns.
     fn saves(&self) -> usize {
         let columns = self.columns();
         let (steps, moved) = (self.steps.len(), self.given.len() + self.made.len());
@@ -263,12 +268,12 @@ impl Lanes {
         self.steps.iter().flatten().copied()
     }
 
-    /// How many columns the loop takes, with those that fill up the last register.
+    /// Number of columns of the loop, rounded up to full registers.
     fn width(&self) -> usize {
         self.columns().next_multiple_of(WIDTH)
     }
 
-    /// The array of the operands that each column has for itself.
+    /// The array of the operands that differ between columns.
     fn given_array(number: usize) -> Ident {
         format_ident!("given_{number}")
     }
@@ -283,12 +288,12 @@ impl Lanes {
         self.made.iter().flat_map(|&step| &self.steps[step]).copied()
     }
 
-    /// How many rows the array of the results has.
+    /// Number of rows of the array of results.
     pub fn made_rows(&self) -> usize {
         self.made.len()
     }
 
-    /// The rows of the results with one of these values.
+    /// The rows of the results that contain one of these values.
     pub fn rows_with(&self, values: &BTreeSet<Value>) -> Vec<usize> {
         let has = |step: usize| self.steps[step].iter().any(|value| values.contains(value));
         self.made.iter().enumerate().filter(|&(_, &step)| has(step)).map(|(row, _)| row).collect()
@@ -345,14 +350,14 @@ impl Lanes {
                     #(#results)*
                 }
             }
-            // Ones, since compilers call a function to fill a long array with zeros, and that takes longer.
+            // Initialised with ones: for zeros compilers call a function, which takes longer.
             let mut #made = [[T::one(); #width]; #made_rows];
             #name(&shared, &#given, &mut #made);
         }
     }
 }
 
-/// The values that loops share, in the order of the first that needs them.
+/// The values that loops share, in the order of their first use.
 fn common(lanes: &[Lanes]) -> Vec<Value> {
     let mut seen = BTreeSet::new();
     lanes.iter().flat_map(|lanes| &lanes.shared).copied().filter(|&value| seen.insert(value)).collect()

@@ -42,10 +42,10 @@ use interface::{Group, Interface, Struct};
 use record::Record;
 
 pub use evaluate::Set;
-pub use specialised::{LAWS, Specialised};
+pub use specialised::{Specialised, law_variant};
 pub use stub::stub;
 
-/// How a module is emitted.
+/// The options of emission.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// path of the runtime as the invoking crate sees it: `$crate` of `mechanism!`, or `::hodograph`
@@ -54,11 +54,11 @@ pub struct Options {
     pub module: String,
     /// expressions of type `&'static str`, each the path of a file that the module depends on
     pub tracked: Vec<TokenStream>,
-    /// the methods that the user asks for; [`mistakes`] finds what is wrong with them
+    /// additional methods; [`mistakes`] checks them
     pub requests: Requests,
 }
 
-/// Methods that the user asks for beside those of every module.
+/// Methods that the user requests in addition to those of every module.
 #[derive(Clone, Debug, Default)]
 pub struct Requests {
     /// sets of quantities
@@ -67,7 +67,7 @@ pub struct Requests {
     pub specialised: Vec<Specialised>,
 }
 
-/// What is wrong with requests, each with its place. Those without mistakes are emitted by [`module`].
+/// The mistakes in requests, each with its place. Requests without mistakes are emitted by [`module`].
 pub fn mistakes(mechanism: &Mechanism, program: &Program, requests: &Requests) -> Vec<(Span, String)> {
     if fits(mechanism, program).is_err() {
         return Vec::new();
@@ -76,12 +76,12 @@ pub fn mistakes(mechanism: &Mechanism, program: &Program, requests: &Requests) -
     Emitter::new(mechanism, program, &krate).mistakes_of(requests)
 }
 
-/// The module of a mechanism. The error says why the program is not one of this mechanism.
+/// The module of a mechanism. The error says why the program does not fit the mechanism.
 pub fn module(mechanism: &Mechanism, program: &Program, options: &Options) -> Result<TokenStream, String> {
-    module_in_parts(mechanism, program, options, split::LONGEST)
+    module_in_parts(mechanism, program, options, split::MAX_STATEMENTS)
 }
 
-/// The module of a mechanism, with at most `longest` operations in a function.
+/// The module of a mechanism, with at most about `longest` operations in a function.
 fn module_in_parts(
     mechanism: &Mechanism,
     program: &Program,
@@ -135,8 +135,8 @@ fn module_in_parts(
     })
 }
 
-/// What the module of a mechanism offers, but for what a user asks for beside. The error says why the program is not
-/// one of this mechanism.
+/// The interface of the module of a mechanism, without the methods that a user requests. The error says why
+/// the program does not fit the mechanism.
 pub fn interface(mechanism: &Mechanism, program: &Program, module: &str) -> Result<Interface, String> {
     fits(mechanism, program)?;
     let krate = quote!(hodograph);
@@ -155,7 +155,7 @@ pub fn interface(mechanism: &Mechanism, program: &Program, module: &str) -> Resu
     })
 }
 
-/// What all parts of the emission look at.
+/// The data that all parts of the emission use.
 struct Emitter<'a> {
     mechanism: &'a Mechanism,
     program: &'a Program,
@@ -168,14 +168,14 @@ struct Emitter<'a> {
     dependent: Record,
     inputs: Record,
     stages: Vec<Stage>,
-    /// values computed at construction and kept
+    /// values that are computed at construction and stored
     hoisted: Vec<Value>,
     uses_time: bool,
-    /// whether velocities, or what follows from them, depend on named inputs.
+    /// whether velocities, or quantities computed from them, depend on named inputs
     kinematic_inputs: bool,
-    /// the greatest number of operations in one function
+    /// the largest number of operations in a function
     longest: usize,
-    /// whether what other routines call becomes part of them
+    /// whether called routines are inlined
     inlined: bool,
 }
 
@@ -208,7 +208,7 @@ impl<'a> Emitter<'a> {
             stages,
             uses_time,
             kinematic_inputs: false,
-            longest: split::LONGEST,
+            longest: split::MAX_STATEMENTS,
             inlined: false,
         };
         emitter.unit_quaternions();
@@ -222,7 +222,7 @@ impl<'a> Emitter<'a> {
         all.into_iter().filter(|record| !record.is_empty()).collect()
     }
 
-    /// The structs of results that implement nothing but what is derived.
+    /// The structs of results with derived traits only.
     fn plain_structures(&self) -> Vec<Struct> {
         let all = [
             self.derivative_structure(),
@@ -275,7 +275,7 @@ impl<'a> Emitter<'a> {
         self.stages.get(value.index()).copied().unwrap_or(Stage::Velocity)
     }
 
-    /// When a guard can be checked: what it is compared with may be known later than its value.
+    /// The stage at which a guard can be checked: its scale may be known later than its value.
     fn guard_stage(&self, guard: &Guard) -> Stage {
         self.program.guard_stage(guard, &self.stages)
     }

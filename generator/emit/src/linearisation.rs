@@ -1,5 +1,5 @@
 //! Emits the derivatives of accelerations and inverse dynamics as matrices, and the linearised equations x' =
-//! A x + B w formed from them.
+//! A x + B w.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
-use super::interface::{Failure, Field, Method, Signature, Struct, Type};
+use super::interface::{Failure, Field, InPlace, Method, Signature, Struct, Type};
 use super::routine::Arguments;
 use super::values::local;
 use hodograph_program::program::{Output, Quantity};
@@ -24,7 +24,7 @@ impl Emitter<'_> {
         Type::Array(Box::new(Type::Number), states + inputs)
     }
 
-    /// The record of the two matrices; nothing where the program has no directional derivative.
+    /// The struct of the two matrices; `None` if the program has no directional derivative.
     pub fn linearisation_record(&self) -> Option<Struct> {
         self.program.output(Quantity::StateTangent)?;
         let (states, inputs) = self.linear_sizes();
@@ -54,7 +54,7 @@ impl Emitter<'_> {
         Some(Struct::of_results("Linearisation", &docs, fields))
     }
 
-    /// The record of a value and its derivatives; nothing where the program has none.
+    /// The struct of a value and its derivatives; `None` if the program has none.
     pub fn derivatives_record(&self) -> Option<Struct> {
         let of = [Quantity::AccelerationsDerivatives, Quantity::InverseDynamicsDerivatives];
         of.iter().find(|&&quantity| self.program.output(quantity).is_some())?;
@@ -87,7 +87,7 @@ impl Emitter<'_> {
         (Type::of_struct("Derivatives"), quote!(Derivatives { #fields }))
     }
 
-    /// The method `linearise`; nothing where the program has no directional derivative.
+    /// The method `linearise`; `None` if the program has no directional derivative.
     pub fn linearise(&self) -> Option<Method> {
         self.program.output(Quantity::StateTangent)?;
         let mut arguments = self.arguments(&[Quantity::StateTangent]);
@@ -104,15 +104,16 @@ impl Emitter<'_> {
             arguments: self.declared(arguments),
             answer: Type::of_struct("Linearisation"),
             failure: Failure::State,
+            in_place: Some(InPlace::of("linearise")),
         };
         let body = quote! {
             #body
-            ::core::result::Result::Ok(Linearisation { a, b })
+            put(Linearisation { a, b })
         };
         Some(Method { signature, attributes: TokenStream::new(), body })
     }
 
-    /// Rows of coordinates from the derivatives of their rates, rows of speeds from those of the
+    /// The rows of coordinates are the derivatives of their rates, the rows of speeds those of the
     /// accelerations.
     fn by_derivatives(&self, arguments: Arguments) -> TokenStream {
         let krate = self.krate;
@@ -148,14 +149,19 @@ impl Emitter<'_> {
         let (a, b) = (matrix(0..states), matrix(states..states + inputs));
         quote! {
             #compute
-            let of_speeds = self.accelerations_derivatives(#passed)?;
+            let of_speeds = self.accelerations_derivatives(#passed);
+            // By reference: a matrix is copied when it is moved out of a result.
+            let of_speeds = match &of_speeds {
+                ::core::result::Result::Ok(of_speeds) => of_speeds,
+                ::core::result::Result::Err(error) => return ::core::result::Result::Err(*error),
+            };
             let (by_coordinates, by_speeds, by_inputs) =
                 (&of_speeds.by_coordinates.data.0, &of_speeds.by_speeds.data.0, &of_speeds.by_inputs.data.0);
             let (a, b) = (#a, #b);
         }
     }
 
-    /// A column at a time: where all derivatives at once would be too long a program.
+    /// One column at a time, for programs in which all derivatives at once would be too long.
     fn by_tangents(&self, arguments: Arguments) -> TokenStream {
         let krate = self.krate;
         let (states, inputs) = self.linear_sizes();

@@ -6,7 +6,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::interface::{Failure, Group, Method, Signature, Type};
+use super::interface::{Failure, Group, InPlace, Method, Signature, Type};
 use super::record::Record;
 use super::routine::Routine;
 use super::values::local;
@@ -74,7 +74,6 @@ impl Emitter<'_> {
 
     /// The method of a routine.
     pub fn routine(&self, routine: &Routine) -> Method {
-        let krate = self.krate;
         let Routine { name, docs, quantities, answer: of_answer, value } = routine;
         let signature = Signature {
             name: name.clone(),
@@ -82,38 +81,57 @@ impl Emitter<'_> {
             arguments: self.declared(self.arguments(quantities)),
             answer: of_answer.clone(),
             failure: Failure::State,
+            in_place: self.in_place(name, quantities),
         };
-        let (statements, wrong) = self.computed(quantities);
-        let right = quote!(::core::result::Result::Ok(#value));
-        let not_finite = quote!(::core::result::Result::Err(#krate::StateError::NotFinite));
-        let answer = match wrong {
-            None => right,
-            Some(wrong) if self.answers_in_place(quantities) => quote! {
-                let mut answer = #right;
-                if #wrong {
-                    answer = #not_finite;
-                }
-                answer
-            },
-            Some(wrong) => quote! {
-                if #wrong {
-                    return #not_finite;
-                }
-                #right
-            },
+        let body = match signature.in_place {
+            Some(_) => self.compute_and_put(quantities, value),
+            None => {
+                let compute = self.compute(quantities);
+                quote!(#compute ::core::result::Result::Ok(#value))
+            }
         };
-        let body = quote!(#statements #answer);
         Method { signature, attributes: quote!(#[inline]), body }
     }
 
-    /// Whether the answer of a routine is made before it is checked: each number is then stored once, where
-    /// the caller wants it. Short answers stay in registers until they are checked.
-    pub fn answers_in_place(&self, quantities: &[Quantity]) -> bool {
-        /// More numbers than there are registers.
+    /// The body of a method in place: it computes the quantities and hands their value to `put`.
+    pub fn compute_and_put(&self, quantities: &[Quantity], value: &TokenStream) -> TokenStream {
+        let krate = self.krate;
+        match self.computed(quantities) {
+            (statements, Some(wrong)) if self.is_stored_first(quantities) => quote! {
+                #statements
+                let mut answer = put(#value);
+                if #wrong {
+                    answer = ::core::result::Result::Err(#krate::StateError::NotFinite);
+                }
+                answer
+            },
+            (statements, wrong) => {
+                let check = self.unless_finite(wrong);
+                quote!(#statements #check put(#value))
+            }
+        }
+    }
+
+    /// The methods in place of a routine: it has them where the size of the answer depends on the mechanism,
+    /// unless the name is that of another method (beside a point `P` there may be a point `P_into`).
+    pub fn in_place(&self, routine: &str, quantities: &[Quantity]) -> Option<InPlace> {
+        let grows = |quantity: &Quantity| quantity.description().grows();
+        let m = self.mechanism;
+        let names = m.points.iter().map(|point| &point.name).chain(m.contacts.iter().map(|of| &of.name));
+        let is_taken = names.map(|name| snake_case(name)).any(|name| {
+            name.strip_suffix("_into").is_some_and(|name| routine.ends_with(&format!("_{name}")))
+        });
+        (quantities.iter().any(grows) && !is_taken).then(|| InPlace::of(routine))
+    }
+
+    /// Whether the result of a routine is stored before it is checked, so that each number is stored once,
+    /// where the caller needs it. Short results stay in registers until they are checked.
+    pub fn is_stored_first(&self, quantities: &[Quantity]) -> bool {
+        /// more than the number of registers
         const MANY: usize = 16;
         let outputs = quantities.iter().filter_map(|&quantity| self.program.output(quantity));
         let count: usize = outputs.map(|output| output.values.len()).sum();
-        // The response is mostly written into a slice by `Contacts`.
+        // `Contacts` mostly writes the response into a slice.
         let written =
             |quantity: &Quantity| matches!(quantity, Quantity::Contact(_, ContactQuantity::Response));
         count > MANY && !quantities.iter().all(written)
@@ -134,7 +152,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The record of which a quantity is one.
+    /// The record with the fields of a quantity, if it has one.
     pub fn record_of(&self, quantity: Quantity) -> Option<&Record> {
         match quantity.description().entries {
             Entries::RatesOfCoordinates => Some(&self.coordinates),
@@ -171,7 +189,7 @@ impl Emitter<'_> {
         (shape, quote!(#krate::nalgebra::SMatrix::from(#data)))
     }
 
-    /// Name and documentation of the method of a quantity, where it has both.
+    /// Name and documentation of the method of a quantity, if it has both.
     pub fn describe(&self, quantity: Quantity) -> Option<(String, String)> {
         let docs = quantity.description().docs;
         let m = self.mechanism;

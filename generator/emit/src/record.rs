@@ -31,7 +31,7 @@ impl Record {
             .map(|quantity| {
                 let text = if quantity.docs.is_empty() { &quantity.name } else { &quantity.docs };
                 let text = prose(text);
-                // the unit stands with what the quantity is, before whatever else is said of it
+                // the unit comes after the first sentence
                 let (what, more) =
                     text.split_once('\n').map_or((text.as_str(), ""), |(what, more)| (what, more));
                 let docs = format!(" {}, in {}", what.trim_end_matches('.'), unit(&quantity.unit));
@@ -87,7 +87,7 @@ impl Record {
             let name = field.name.to_string();
             interface::Field::new(name.trim_start_matches("r#"), Type::Number, field.docs.trim())
         });
-        // Dependent speeds follow from the others.
+        // Dependent speeds are determined by the others.
         let stated = self.name != "DependentSpeeds";
         Struct { name: self.name.to_string(), docs: self.docs.clone(), fields: fields.collect(), stated }
     }
@@ -165,7 +165,7 @@ impl Record {
     }
 }
 
-/// How a struct of results is serialised and logged.
+/// The implementations of serialisation and logging for a struct of results.
 pub fn outcome(krate: &TokenStream, name: &str, fields: &[&str]) -> TokenStream {
     let (record, count) = (ident(name), Literal::usize_unsuffixed(fields.len()));
     let names: Vec<Ident> = fields.iter().map(|field| ident(field)).collect();
@@ -176,7 +176,7 @@ pub fn outcome(krate: &TokenStream, name: &str, fields: &[&str]) -> TokenStream 
     }
 }
 
-/// How a struct is logged on a target: a format string for the whole, because it must be one literal.
+/// The implementation of logging on targets: one format string for the struct, since it must be a literal.
 fn logged(krate: &TokenStream, name: &str, fields: &[&Ident]) -> TokenStream {
     let each: Vec<String> =
         fields.iter().map(|field| format!("{}: {{}}", field.to_string().trim_start_matches("r#"))).collect();

@@ -15,37 +15,42 @@ use hodograph_program::program::graph::Input;
 use hodograph_program::program::operation::{Operation, Stage, Value};
 use hodograph_program::program::quantity::Takes;
 
-/// A method that computes quantities and answers with an expression made of their values.
+/// A method that computes quantities and returns an expression of their values.
 pub struct Routine {
     /// its name in the module
     pub name: String,
-    /// what it gives
+    /// its documentation
     pub docs: String,
-    /// what it computes
+    /// the quantities that it computes
     pub quantities: Vec<Quantity>,
-    /// the type of its answer
+    /// the type of its result
     pub answer: Type,
-    /// its answer, from the local variables of the values
+    /// its result, an expression of the local variables of the values
     pub value: TokenStream,
 }
 
 impl Emitter<'_> {
-    /// The statements that compute quantities and check them; their values are local variables afterwards.
+    /// The statements that compute quantities and check them; their values are then local variables.
     pub fn compute(&self, quantities: &[Quantity]) -> TokenStream {
-        let krate = self.krate;
         let (statements, wrong) = self.computed(quantities);
-        let check = wrong.map(|wrong| {
+        let check = self.unless_finite(wrong);
+        quote! { #statements #check }
+    }
+
+    /// The statement that fails where a result is not finite.
+    pub fn unless_finite(&self, wrong: Option<TokenStream>) -> Option<TokenStream> {
+        let krate = self.krate;
+        wrong.map(|wrong| {
             quote! {
                 if #wrong {
                     return ::core::result::Result::Err(#krate::StateError::NotFinite.into());
                 }
             }
-        });
-        quote! { #statements #check }
+        })
     }
 
-    /// The statements that compute quantities and check what must not vanish, and the expression that tells
-    /// whether a result is not finite.
+    /// The statements that compute quantities and check guards, and the expression for whether a result is
+    /// not finite.
     pub fn computed(&self, quantities: &[Quantity]) -> (TokenStream, Option<TokenStream>) {
         let slice = self.program.slice(quantities);
         let needed = self.needed(
@@ -77,11 +82,11 @@ impl Emitter<'_> {
         let loops = lanes::loops(&lanes, self);
         let wrong = self.not_finite(&results, &lanes);
         let fetch = lanes.iter().zip(0..).map(|(lanes, number)| lanes.fetch(number));
-        // What loops give is fetched last: fetched before the checks, it would be stored and fetched again.
+        // Results of loops are loaded last: loaded before the checks, they would be spilled.
         (quote! { #statements #loops #(#guards)* #(#fetch)* }, wrong)
     }
 
-    /// The values that a method computes: what depends on parameters alone is only fetched.
+    /// The values that a method computes; values that depend on parameters alone are only loaded.
     pub fn needed(&self, results: &[Value], guards: &[&Guard]) -> BTreeSet<Value> {
         let mut needed = BTreeSet::new();
         let mut stack: Vec<Value> = results.to_vec();
@@ -134,7 +139,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Whether the quantity depends on speeds, by definition or in fact.
+    /// Whether the quantity depends on speeds, by definition or in this program.
     fn takes_speeds(&self, quantity: Quantity) -> bool {
         quantity.description().takes.speeds || self.uses(quantity, |input| matches!(input, Input::Speed(_)))
     }
@@ -167,7 +172,7 @@ impl Emitter<'_> {
         quote!(&self, #declared)
     }
 
-    /// The same arguments, handed on to another routine.
+    /// The same arguments, passed on to another routine.
     pub fn passed(&self, arguments: Arguments) -> TokenStream {
         let time = arguments.time.then(|| quote!(time,));
         let coordinates = arguments.coordinates.then(|| quote!(q,));
@@ -178,7 +183,7 @@ impl Emitter<'_> {
     }
 }
 
-/// Which arguments a routine has.
+/// The arguments of a routine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arguments {
     /// time

@@ -10,7 +10,7 @@ use super::values::local;
 use crate::identifiers::ident;
 use hodograph_program::program::{ContactQuantity, Quantity};
 
-/// What the derivative by the speeds needs of a contact.
+/// The quantities of a contact that the derivative with respect to the speeds needs.
 const NEEDED: [ContactQuantity; 4] = [
     ContactQuantity::Velocity,
     ContactQuantity::PartialVelocities,
@@ -24,7 +24,7 @@ impl Emitter<'_> {
         self.speeds.len()
     }
 
-    /// The type of differentiated collisions, where there is a contact.
+    /// The type of differentiated collisions, if there is a contact with collisions.
     pub fn derivative_structure(&self) -> Option<Struct> {
         (0..self.mechanism.contacts.len()).find(|&contact| self.collides(contact))?;
         let p = self.independent_speeds();
@@ -111,11 +111,12 @@ impl Emitter<'_> {
         arguments.push(Argument { name: "surface", of: Type::Surface });
         let name = format!("{}_derivative", self.contact_method("collide", contact));
         let answer = Type::of_struct("CollisionDerivative");
-        let signature = Signature { name, docs, arguments, answer, failure: Failure::Collision };
+        let signature =
+            Signature { name, docs, arguments, answer, failure: Failure::Collision, in_place: None };
         Some(Method { signature, attributes: TokenStream::new(), body })
     }
 
-    /// Only where the derivatives of the contact by the coordinates and a gap are there.
+    /// The saltation matrix, if the contact has a gap and derivatives with respect to the coordinates.
     fn saltation(&self, contact: usize) -> Option<Method> {
         let krate = self.krate;
         let tangent = self.contact_output(contact, ContactQuantity::Tangent)?;
@@ -240,7 +241,8 @@ impl Emitter<'_> {
         arguments.push(Argument { name: "surface", of: Type::Surface });
         let answer = Type::Saltation(count);
         let name = self.contact_method("saltation", contact);
-        let signature = Signature { name, docs, arguments, answer, failure: Failure::Collision };
+        let signature =
+            Signature { name, docs, arguments, answer, failure: Failure::Collision, in_place: None };
         Some(Method { signature, attributes: TokenStream::new(), body })
     }
 }

@@ -1,41 +1,52 @@
 //! Emits the implementation of the traits `Mechanism` and `Contacts`: it converts slices to the arguments of
-//! the type's own methods, and their results to slices.
+//! the methods of the type, and their results to slices.
 
 mod closed_contacts;
 mod contacts;
 mod description;
+mod features;
 mod geometry;
+mod in_one_pass;
 mod quantities;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::interface::InPlace;
 use super::record::Record;
 use super::routine::Arguments;
 use hodograph_program::program::Quantity;
 
 impl Emitter<'_> {
-    /// Both implementations, with the names and units that they tell.
+    /// Both implementations, with names and units.
     pub fn traits(&self) -> TokenStream {
         let krate = self.krate;
         let description = self.description();
         let mechanism = self.mechanism_trait();
         let (in_one_pass, routines) = self.closed_in_one_pass().unzip();
-        let contacts = self.contacts_trait(in_one_pass);
+        let (several, of_several) = self.several_in_one_pass();
+        let contacts = self.contacts_trait(quote!(#several #in_one_pass));
         let name = &self.name;
-        let routines = routines.map(|routines| {
+        let routines = quote!(#of_several #routines);
+        let routines = (!routines.is_empty()).then(|| {
             quote! {
-                /// Parts of `Contacts::closed_contacts`.
+                /// Parts of `Contacts::closed_contacts`, `gaps` and `contact_velocities`.
                 impl<T: #krate::Scalar> #name<T> { #routines }
             }
         });
-        quote! { #description #mechanism #contacts #routines }
+        let features = self.feature_routines().map(|routines| {
+            quote! {
+                /// Contacts that have no methods of their own.
+                impl<T: #krate::Scalar> #name<T> { #routines }
+            }
+        });
+        quote! { #description #mechanism #contacts #routines #features }
     }
 
     fn mechanism_trait(&self) -> TokenStream {
         let (krate, name) = (self.krate, &self.name);
-        let told = self.told();
+        let told = self.names_and_counts();
         let parameters = self.parameters_by_slices();
         let quantities = self.quantities_by_slices();
         let configuration = self.configuration_by_slices();
@@ -54,7 +65,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The statements that make the arguments of a method of a `State`.
+    /// The statements that convert a `State` to the arguments of a method.
     fn unpack(&self, arguments: Arguments) -> TokenStream {
         let krate = self.krate;
         let record = |used: bool, record: &Record, variable: TokenStream, slice: &str| {
@@ -78,13 +89,13 @@ impl Emitter<'_> {
         }
     }
 
-    /// The type's own method of a quantity, called with what a `State` gives.
+    /// The call of the method of a quantity with the parts of a `State`.
     fn own(&self, quantity: Quantity) -> (TokenStream, TokenStream) {
         let method = crate::identifiers::ident(&quantity.method(self.mechanism).unwrap_or_default());
         self.own_method(&method, &[quantity])
     }
 
-    /// The type's own method that computes quantities, called with what a `State` gives.
+    /// The call of a method that computes quantities with the parts of a `State`.
     fn own_method(&self, method: &Ident, quantities: &[Quantity]) -> (TokenStream, TokenStream) {
         let arguments = self.arguments(quantities);
         (self.unpack(arguments), {
@@ -93,14 +104,14 @@ impl Emitter<'_> {
         })
     }
 
-    /// The statements that write a quantity into a slice; where the mechanism has none, the slice must be
-    /// empty.
+    /// The statements that write a quantity into a slice; if the mechanism does not have it, the slice must
+    /// be empty.
     fn written(&self, quantity: Quantity) -> TokenStream {
         let (_, what) = quantity.description().slice;
         self.written_to(quantity, &slice_of(quantity), what)
     }
 
-    /// [`Self::written`], into that slice; `what` is in it.
+    /// [`Self::written`] into the given slice; `what` describes its content in messages.
     fn written_to(&self, quantity: Quantity, slice: &Ident, what: &str) -> TokenStream {
         let krate = self.krate;
         let Some(output) = self.program.output(quantity).filter(|output| !output.values.is_empty()) else {
@@ -109,33 +120,30 @@ impl Emitter<'_> {
                 #krate::generated::check_length(#slice, 0, #what)
             };
         };
-        let (unpack, call) = self.own(quantity);
-        if quantity == Quantity::MassMatrix && self.answers_in_place(&[quantity]) {
-            // Computed here: the method's answer would be stored in one place and then in the other.
-            let (compute, (_, value)) = (self.compute(&[quantity]), self.shaped(output));
-            let (rows, columns) =
-                (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(output.columns));
-            return quote! {
-                #unpack
-                #compute
-                #krate::generated::write_rows::<T, #rows, #columns>(#slice, &#value, #what)
-            };
-        }
-        let write = match self.record_of(quantity) {
+        let numbers = |count: usize| Literal::usize_unsuffixed(count);
+        let write = |value: TokenStream| match self.record_of(quantity) {
             Some(record) => {
-                let size = Literal::usize_unsuffixed(record.len());
-                quote!(#krate::generated::write_array::<T, #size>(#slice, #call?, #what))
+                let size = numbers(record.len());
+                quote!(#krate::generated::write_array::<T, #size>(#slice, #value, #what))
             }
             None => {
-                let (rows, columns) =
-                    (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(output.columns));
-                quote!(#krate::generated::write_rows::<T, #rows, #columns>(#slice, &#call?, #what))
+                let (rows, columns) = (numbers(output.rows), numbers(output.columns));
+                quote!(#krate::generated::write_rows::<T, #rows, #columns>(#slice, &#value, #what))
             }
         };
+        let (unpack, call) = self.own(quantity);
+        let method = quantity.method(self.mechanism).unwrap_or_default();
+        if let Some(InPlace { put, .. }) = self.in_place(&method, &[quantity]) {
+            // Without the result of the method, which would be stored first and then copied.
+            let arguments = self.passed(self.arguments(&[quantity]));
+            let write = write(quote!(value));
+            return quote!(#unpack self.#put(#arguments |value| #write));
+        }
+        let write = write(quote!(#call?));
         quote! { #unpack #write }
     }
 
-    /// The statement that makes the given rates of the independent speeds of a slice.
+    /// The statement that converts a slice to the given rates of the independent speeds.
     fn given_accelerations(&self) -> TokenStream {
         let krate = self.krate;
         if self.speeds.is_empty() {
@@ -149,7 +157,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// A `match` over the numbers of a kind; what has no arm has no such thing.
+    /// A `match` over the indices of a kind; indices without an arm are an error.
     fn by_number(&self, number: &str, kind: &str, arms: Vec<(usize, TokenStream)>) -> TokenStream {
         let krate = self.krate;
         let (number, kind) = (format_ident!("{number}"), format_ident!("{kind}"));
@@ -167,7 +175,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// What is written where the program does not have a quantity.
+    /// The error for a quantity that the program does not have.
     fn undefined(&self, what: &str) -> TokenStream {
         let krate = self.krate;
         quote! {

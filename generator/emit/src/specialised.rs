@@ -1,5 +1,5 @@
-//! Emits a collision that is one routine, specialised to its contact: the solver is part of it, and what is
-//! known of the surface while compiling is folded in.
+//! Emits a collision as a single routine that is specialised to its contact: the solver is inlined, and the
+//! parts of the surface that are known at compile time are folded in.
 
 use proc_macro2::{Ident, Span};
 use quote::{format_ident, quote};
@@ -8,8 +8,11 @@ use super::interface::{Argument, Failure, Method, Signature, Type};
 use super::{Emitter, record};
 use hodograph_model::suggest::nearest;
 
-/// The laws of restitution, by the names of the runtime's variants.
-pub const LAWS: [&str; 3] = ["Newton", "Poisson", "Stronge"];
+/// The runtime's variant of a law of restitution that models name so.
+pub fn law_variant(name: &str) -> String {
+    let (initial, rest) = name.split_at_checked(1).unwrap_or((name, ""));
+    initial.to_uppercase() + rest
+}
 
 /// A specialised collision: `specialise strike(tip_wall, law = Stronge, mu = 0.3)`.
 #[derive(Clone, Debug)]
@@ -18,14 +21,13 @@ pub struct Specialised {
     pub name: Ident,
     /// the name of its contact in the module, `tip_wall` for `collide_tip_wall`
     pub contact: Ident,
-    /// the law of restitution, one of [`LAWS`]; an argument of the method if it is not given, as are the next
-    /// two
+    /// the law of restitution, as models name it; `None`: an argument of the method, as for the next two
     pub law: Option<&'static str>,
     /// the coefficient of friction
     pub mu: Option<f64>,
     /// the coefficient of restitution
     pub e: Option<f64>,
-    /// the greatest number of quadratures, where there is a limit
+    /// the greatest number of quadratures, if there is a limit
     pub budget: Option<u32>,
 }
 
@@ -37,7 +39,7 @@ impl Emitter<'_> {
         contacts.find(|&contact| self.collides(contact) && self.contact_method("collide", contact) == wanted)
     }
 
-    /// What is wrong with the contact of a specialised collision.
+    /// The mistake in the contact of a specialised collision, if any.
     pub fn contact_mistake(&self, specialised: &Specialised) -> Option<(Span, String)> {
         let name = &specialised.contact;
         if self.named_contact(name).is_some() {
@@ -62,7 +64,7 @@ impl Emitter<'_> {
 
     /// The methods of specialised collisions.
     pub fn specialised(&self, all: &[Specialised]) -> Vec<Method> {
-        // Long routines are not split here, and sines and cosines are no functions of their own.
+        // Long routines are not split here, and sines and cosines are inlined.
         let emitter = Emitter {
             inlined: true,
             longest: usize::MAX,
@@ -87,19 +89,20 @@ impl Emitter<'_> {
                 quote!(let #name = #value;)
             })
         });
-        let marker = law.map_or_else(|| format_ident!("AnyLaw"), |law| format_ident!("{law}"));
-        let given_law = law.map(|law| {
-            let law = format_ident!("{law}");
-            quote!(let law = #krate::Law::#law;)
-        });
+        let law = law.map(|law| format_ident!("{}", law_variant(law))).map(|law| quote!(#krate::Law::#law));
+        let known = match &law {
+            Some(law) => quote!(#krate::generated::OneLaw<{ #law.number() }>),
+            None => quote!(#krate::generated::AnyLaw),
+        };
+        let given_law = law.map(|law| quote!(let law = #law;));
         let budget = budget.map(|budget| quote!(.with_budget(#budget)));
         let solved = match self.structure(contact) {
             Some(structure) => quote! {
-                #krate::generated::resolve_structured_inlined::<#krate::structure::#structure, #krate::generated::#marker, T>
+                #krate::generated::resolve_structured_inlined::<#krate::structure::#structure, #known, T>
             },
-            None => quote!(#krate::generated::resolve_inlined::<#krate::generated::#marker, T>),
+            None => quote!(#krate::generated::resolve_inlined::<#known, T>),
         };
-        let struck = self.struck(contact, &quote!(#solved(&contact, &surface)));
+        let struck = self.collision_statements(contact, &quote!(#solved(&contact, &surface)));
         let body = quote! {
             #(#given)*
             #given_law
@@ -108,15 +111,21 @@ impl Emitter<'_> {
         };
         let docs = self.about_specialised(specialised, contact);
         let answer = Type::of_struct("Collision");
-        let signature =
-            Signature { name: name.to_string(), docs, arguments, answer, failure: Failure::Collision };
+        let signature = Signature {
+            name: name.to_string(),
+            docs,
+            arguments,
+            answer,
+            failure: Failure::Collision,
+            in_place: None,
+        };
         Some(Method { signature, attributes: quote!(#[inline(never)]), body })
     }
 
     fn about_specialised(&self, specialised: &Specialised, contact: usize) -> String {
         let Specialised { law, mu, e, budget, .. } = specialised;
         let known = [
-            law.map(|law| format!("{law}'s law")),
+            law.map(|law| format!("{}'s law", law_variant(law))),
             mu.map(|mu| format!("mu = {mu}")),
             e.map(|e| format!("e = {e}")),
             budget.map(|budget| format!("a budget of {budget} quadratures")),

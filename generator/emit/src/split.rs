@@ -1,9 +1,9 @@
-//! Splits long routines into several functions, since the time to compile a function grows faster than its
-//! length.
+//! Splits long routines into several functions, since compile time grows faster than the length of a
+//! function.
 //!
 //! A part receives inputs of the routine and the arrays that earlier parts have written, and writes an array
-//! of its own: the values that later parts or the result need, each as soon as it is there. The operations
-//! are the same as in one function, and so are the bits.
+//! of its own with the values that later parts or the result need, each as soon as it is computed. The
+//! operations are the same as in one function, and so are the bits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,13 +16,13 @@ use super::storage::{ArrayEntry, Storage};
 use super::values::{Place, local};
 use hodograph_program::program::operation::{Operation, Stage, Value};
 
-/// The greatest number of statements in one function of an emitted module, roughly. What passes from one
-/// function to the next is stored and loaded.
-pub const LONGEST: usize = 4400;
+/// The approximate largest number of statements in a function of an emitted module. Values that pass from one
+/// function to the next are stored and loaded.
+pub const MAX_STATEMENTS: usize = 4400;
 
-/// Where the values of earlier parts are.
+/// The places of the values of earlier parts.
 #[derive(Default)]
-struct Gone {
+struct Earlier {
     places: BTreeMap<String, Slot>,
     /// values in the arrays of loops
     stored: BTreeSet<Value>,
@@ -33,9 +33,9 @@ struct Gone {
 /// A place in an array.
 #[derive(Clone)]
 enum Slot {
-    /// in that of a part
+    /// in the array of a part
     Part { part: usize, at: usize },
-    /// in one that loops read
+    /// in an array that loops read
     InArray(ArrayEntry),
 }
 
@@ -57,10 +57,10 @@ fn array(part: usize) -> Ident {
 }
 
 impl Emitter<'_> {
-    /// The statements that compute `values`, in their order, and fill the arrays of loops; `wanted` are those
-    /// that are looked at afterwards.
+    /// The statements that compute `values` in order and fill the arrays of loops; `wanted` are the values
+    /// that are used afterwards.
     pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>, storage: &Storage) -> TokenStream {
-        let pairs = self.together(values);
+        let pairs = self.joint_pairs(values);
         let angles = self.angles(&pairs, values);
         let of_angles = self.sines_and_cosines(&pairs);
         let first: BTreeSet<Value> = pairs.iter().chain(&angles).copied().collect();
@@ -69,7 +69,7 @@ impl Emitter<'_> {
         let (work, given): (Vec<Value>, Vec<Value>) = rest.iter().partition(|&&value| self.is_work(value));
         if rest.len() <= self.longest {
             let statements = rest.iter().filter_map(|&value| self.listed(value)).collect();
-            // The arrays of loops need what is in them.
+            // Values in the arrays of loops are used, too.
             let needed = wanted.iter().copied().chain(storage.values());
             let needed = needed.map(|value| local(value).to_string()).collect();
             let (statements, full) = (grouped(statements, &needed), storage.full());
@@ -78,20 +78,21 @@ impl Emitter<'_> {
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
         let parts = self.parts(&work, rest.len().div_ceil(self.longest.max(1)));
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
-        let mut gone = Gone::default();
-        let calls: Vec<TokenStream> =
-            (0..parts.len()).map(|index| self.part(&parts, index, &wanted, storage, &mut gone)).collect();
-        let looked_at = gone.places.iter().filter(|(name, _)| wanted.contains(*name));
+        let mut earlier_parts = Earlier::default();
+        let calls: Vec<TokenStream> = (0..parts.len())
+            .map(|index| self.part(&parts, index, &wanted, storage, &mut earlier_parts))
+            .collect();
+        let looked_at = earlier_parts.places.iter().filter(|(name, _)| wanted.contains(*name));
         let looked_at = looked_at.map(|(name, place)| {
             let (name, place) = (format_ident!("{name}"), place.tokens());
             quote!(let #name = #place;)
         });
-        let (empty, stores) = (storage.empty(), storage.stores(&gone.stored));
+        let (empty, stores) = (storage.empty(), storage.stores(&earlier_parts.stored));
         quote! { #(#angles)* #of_angles #(#given)* #empty #(#calls)* #(#looked_at)* #stores }
     }
 
-    /// Parts of about equal length, at least so many. None makes more variables than a function may, but for
-    /// a sixth more, unless it is one statement.
+    /// Parts of about equal length, at least `least` of them. Each defines at most a sixth more variables
+    /// than a function may, unless it is a single statement.
     fn parts<'v>(&self, work: &'v [Value], least: usize) -> Vec<&'v [Value]> {
         let most = self.longest + self.longest / 6;
         let variables = |part: &[Value]| {
@@ -109,8 +110,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only
-    /// fetched.
+    /// Whether a method computes the value. Constants, inputs and values known at construction are only
+    /// loaded.
     pub fn is_work(&self, value: Value) -> bool {
         self.stage(value) > Stage::Parameter && !matches!(self.program.operation(value), Operation::Input(_))
     }
@@ -122,7 +123,7 @@ impl Emitter<'_> {
         index: usize,
         wanted: &BTreeSet<String>,
         storage: &Storage,
-        gone: &mut Gone,
+        earlier_parts: &mut Earlier,
     ) -> TokenStream {
         let krate = self.krate;
         let part = parts[index];
@@ -134,12 +135,12 @@ impl Emitter<'_> {
         let later: BTreeSet<String> = parts[index + 1..].iter().flat_map(|part| self.takes(part)).collect();
         let taken: BTreeSet<String> = self.takes(part).difference(&made).cloned().collect();
         let (earlier, outside): (Vec<String>, Vec<String>) =
-            taken.into_iter().partition(|name| gone.places.contains_key(name));
+            taken.into_iter().partition(|name| earlier_parts.places.contains_key(name));
         let mut places: BTreeMap<String, TokenStream> = BTreeMap::new();
         let mut arrays: BTreeSet<usize> = BTreeSet::new();
         let mut filled: BTreeSet<Ident> = BTreeSet::new();
         for name in earlier {
-            if let Some(place) = gone.places.get(&name) {
+            if let Some(place) = earlier_parts.places.get(&name) {
                 match place {
                     Slot::Part { part, .. } => drop(arrays.insert(*part)),
                     Slot::InArray(entry) => drop(filled.insert(entry.array.clone())),
@@ -155,7 +156,8 @@ impl Emitter<'_> {
         let mut gives = 0;
         for &value in part {
             for name in self.takes(&[value]) {
-                // A value is fetched where it is needed first: all at the start would not stay in registers.
+                // A value is loaded before its first use: loaded at the start, it would not stay in a
+                // register.
                 if let Some(place) = places.remove(&name) {
                     let local = format_ident!("{name}");
                     let tokens = quote!(let #local = #place;);
@@ -169,24 +171,24 @@ impl Emitter<'_> {
                     statements.push(store(entry.store(value), local(value).to_string()));
                     filled.insert(entry.array.clone());
                 }
-                gone.stored.insert(value);
-                gone.places.insert(local(value).to_string(), Slot::InArray(first.clone()));
+                earlier_parts.stored.insert(value);
+                earlier_parts.places.insert(local(value).to_string(), Slot::InArray(first.clone()));
                 continue;
             }
             for name in self.makes(value) {
                 if later.contains(&name) || wanted.contains(&name) {
                     let (at, name_) = (Literal::usize_unsuffixed(gives), format_ident!("{name}"));
                     statements.push(store(quote!(gives[#at] = #name_;), name.clone()));
-                    gone.places.insert(name, Slot::Part { part: index, at: gives });
+                    earlier_parts.places.insert(name, Slot::Part { part: index, at: gives });
                     gives += 1;
                 }
             }
         }
-        gone.lengths.push(gives);
+        earlier_parts.lengths.push(gives);
         let outside: Vec<_> = outside.iter().map(|name| format_ident!("{name}")).collect();
         let (takes, gives) = (Literal::usize_unsuffixed(outside.len()), Literal::usize_unsuffixed(gives));
         let earlier: Vec<_> = arrays.iter().map(|&part| array(part)).collect();
-        let lengths = arrays.iter().map(|&part| Literal::usize_unsuffixed(gone.lengths[part]));
+        let lengths = arrays.iter().map(|&part| Literal::usize_unsuffixed(earlier_parts.lengths[part]));
         let (name, own) = (format_ident!("part_{index}"), array(index));
         let shapes = filled.iter().map(|array| storage.shape(array));
         let shapes = filled.iter().zip(shapes).map(|(array, shape)| quote!(#array: &mut #shape,));
@@ -198,13 +200,13 @@ impl Emitter<'_> {
                 #(#numbers)*
                 #statements
             }
-            // Ones, since compilers call a function to fill a long array with zeros, and that takes longer.
+            // Initialised with ones: for zeros compilers call a function, which takes longer.
             let mut #own = [T::one(); #gives];
             #name(&[#(#outside),*], #(&#earlier,)* #(#filled)* &mut #own);
         }
     }
 
-    /// The statement of a value for a list that may be grouped; `None` where it needs none.
+    /// The statement of a value for a list that may be grouped; `None` if it needs none.
     fn listed(&self, value: Value) -> Option<Statement> {
         let tokens = self.statement(value, Place::Method)?;
         let operation = self.program.operation(value);
@@ -213,7 +215,7 @@ impl Emitter<'_> {
         Some(Statement { tokens, makes: self.makes(value), takes: operation.operands().map(name).collect() })
     }
 
-    /// The variables that a statement makes.
+    /// The variables that a statement defines.
     fn makes(&self, value: Value) -> Vec<String> {
         let name = local(value).to_string();
         match self.program.operation(value) {
@@ -222,7 +224,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The variables that statements use, but for numbers.
+    /// The variables that statements use, without constants.
     fn takes(&self, part: &[Value]) -> BTreeSet<String> {
         let mut names = BTreeSet::new();
         for &value in part {

@@ -1,5 +1,5 @@
-//! Arrays that loops over columns read. The parts of a long routine write them straight; a short routine
-//! writes them down as they are.
+//! Arrays that loops over columns read. The parts of a long routine store values in them one by one; a short
+//! routine writes them as array literals.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,12 +22,11 @@ pub struct ArrayEntry {
 struct Filled {
     name: Ident,
     rows: Vec<Vec<Value>>,
-    /// length of its rows with what fills them up, as the loop reads them; `None`: the only row, and the
-    /// array is one of numbers
+    /// length of its rows including padding, as the loop reads them; `None`: a one-dimensional array
     width: Option<usize>,
 }
 
-/// All arrays that the loops of a routine read, and where in them each value belongs.
+/// All arrays that the loops of a routine read, and the places of each value.
 #[derive(Default)]
 pub struct Storage {
     arrays: Vec<Filled>,
@@ -40,7 +39,7 @@ impl Storage {
         self.add(Filled { name: format_ident!("{name}"), rows: vec![values], width: None });
     }
 
-    /// Adds an array of rows, filled up with zeros to a length.
+    /// Adds an array of rows, padded with zeros to a length.
     pub fn table(&mut self, name: &Ident, rows: Vec<Vec<Value>>, width: usize) {
         self.add(Filled { name: name.clone(), rows, width: Some(width) });
     }
@@ -56,12 +55,12 @@ impl Storage {
         self.arrays.push(filled);
     }
 
-    /// Where a value belongs.
+    /// The places of a value.
     pub fn of(&self, value: Value) -> &[ArrayEntry] {
         self.places.get(&value).map_or(&[], Vec::as_slice)
     }
 
-    /// All values that belong somewhere.
+    /// All values with a place.
     pub fn values(&self) -> impl Iterator<Item = Value> {
         self.places.keys().copied()
     }
@@ -71,7 +70,7 @@ impl Storage {
         self.arrays.iter().find(|filled| filled.name == *array).map(Filled::shape)
     }
 
-    /// The arrays before anything is in them.
+    /// The arrays before values are stored in them.
     pub fn empty(&self) -> TokenStream {
         let arrays = self.arrays.iter().map(|filled| {
             let (name, empty) = (&filled.name, filled.empty());
@@ -80,14 +79,14 @@ impl Storage {
         quote!(#(#arrays)*)
     }
 
-    /// The statements that store every value but those that are stored already.
+    /// The statements that store every value except those already stored.
     pub fn stores(&self, stored: &BTreeSet<Value>) -> TokenStream {
         let left = self.places.iter().filter(|(value, _)| !stored.contains(value));
         let stores = left.flat_map(|(&value, storage)| storage.iter().map(move |slot| slot.store(value)));
         quote!(#(#stores)*)
     }
 
-    /// The arrays with all values at once.
+    /// The arrays with all values as literals.
     pub fn full(&self) -> TokenStream {
         let arrays = self.arrays.iter().map(|filled| {
             let (name, full) = (&filled.name, filled.full());

@@ -1,5 +1,5 @@
 //! Emits the module of a model with mistakes: compile errors for the mistakes, and names that keep the
-//! compiler from reporting others.
+//! compiler from reporting consequential errors.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -8,10 +8,9 @@ use crate::identifiers;
 
 /// A module that holds `errors` (calls of `compile_error!`) and the names of the types that a mechanism has.
 ///
-/// The names are imports of what does not exist. In a module with a `compile_error!` the compiler does not
-/// report these, and takes what they name, and all that follows from it in the user's code, for already
-/// reported: one mistake in a model is one error. `tracked` as in [`super::Options`]; `types` are those of
-/// the sets.
+/// The names are imports of items that do not exist. In a module with a `compile_error!` the compiler does
+/// not report these, and it also suppresses errors of code that uses the imported names: one mistake in a
+/// model is one error. `tracked` is as in [`super::Options`]; `types` are those of the sets.
 pub fn stub(
     module: &str,
     mechanism: &str,
@@ -45,7 +44,7 @@ mod tests {
 
     #[test]
     fn a_stub_is_rust() {
-        // of a file that is missing its name is all that is known
+        // of a missing file only the name is known
         for name in ["two_sleds", "arm.v2", "2-arms", "-", "ö", "a b", "linearisation", "fn"] {
             let error = quote!(::core::compile_error! { "no" });
             let tokens =

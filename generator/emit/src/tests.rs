@@ -1,4 +1,4 @@
-//! A small module under review, and the properties that every module has.
+//! Compares a small module with a reviewed one, and tests properties of every module.
 
 use std::collections::BTreeMap;
 
@@ -95,6 +95,7 @@ fn mechanism() -> Mechanism {
             gap: None,
             without_gap: false,
             validity: None,
+            tangent: None,
             gap_span: span,
             surface: None,
             law: ContactLaw::default(),
@@ -186,7 +187,7 @@ fn the_module_is_the_reviewed_one() {
     reviewed("pendulum.rs", &emitted());
 }
 
-/// What the symbols show of a reduced matrix selects the closed form that the collision calls.
+/// The structure of a reduced matrix selects the closed form that the collision calls.
 #[test]
 fn structure_selects_the_closed_form() {
     let call = |structure| {
@@ -213,10 +214,10 @@ fn structure_selects_the_closed_form() {
     assert!(!call(Structure::General).contains("resolve_structured"));
 }
 
-/// What is known of the surface is folded in, and the rest becomes arguments; the structure selects the closed
-/// form.
+/// Known parts of the surface are folded in, and the others become arguments; the structure selects the
+/// closed form.
 #[test]
-fn a_specialised_collision_knows_what_it_is_told() {
+fn known_parts_of_the_surface_are_folded_into_a_specialised_collision() {
     let name = |text: &str| quote::format_ident!("{text}");
     let emitted = |structure, contact: &str, law, e, budget| {
         let derived = Derived { structures: vec![structure], ..derived() };
@@ -230,10 +231,10 @@ fn a_specialised_collision_knows_what_it_is_told() {
     };
     let contact = &mechanism().contacts[0].name;
     let contact = hodograph_model::rust_names::snake_case(contact);
-    let text = emitted(Structure::Planar, &contact, Some("Stronge"), Some(0.5), Some(8)).unwrap();
+    let text = emitted(Structure::Planar, &contact, Some("stronge"), Some(0.5), Some(8)).unwrap();
     assert!(text.contains("mu : T ,)") && text.contains(". with_budget (8u32)"), "{text}");
     assert!(text.contains(
-        "resolve_structured_inlined :: < :: hodograph :: structure :: Planar , :: hodograph :: generated :: Stronge , T >"
+        "resolve_structured_inlined :: < :: hodograph :: structure :: Planar , :: hodograph :: generated :: OneLaw < { :: hodograph :: Law :: Stronge . number () } > , T >"
     ));
     let text = emitted(Structure::General, &contact, None, None, None).unwrap();
     assert!(text.contains("mu : T , e : T , law : :: hodograph :: Law ,)"), "{text}");
@@ -245,8 +246,8 @@ fn a_specialised_collision_knows_what_it_is_told() {
     assert!(error.contains("no contact `nobody`"), "{error}");
 }
 
-/// A value that depends on parameters alone, compared with one that depends on coordinates, is kept for the
-/// routines that check it.
+/// A value that depends on parameters alone, but is compared with one that depends on coordinates, is stored
+/// for the routines that check it.
 #[test]
 fn a_guard_is_checked_where_all_of_it_is_known() {
     let mut derived = derived();
@@ -267,8 +268,8 @@ fn a_guard_is_checked_where_all_of_it_is_known() {
     assert!(after.contains("vanishes_beside"));
 }
 
-/// A result that is a factor of another need not be looked at: the product is not finite either. Its
-/// reciprocal may be.
+/// A result that is a factor of another needs no check: the product is not finite either. Its reciprocal
+/// needs one.
 #[test]
 fn only_results_that_no_other_depends_on_are_checked() {
     let mut derived = derived();
@@ -317,7 +318,7 @@ fn long_routines_come_in_parts() {
     reviewed("pendulum_in_parts.rs", &prettyplease::unparse(&syn::parse2(tokens).expect("parts are Rust")));
 }
 
-/// The whole's tests evaluate this derivation beside the reviewed module.
+/// The tests of the whole evaluate this derivation beside the reviewed module.
 #[test]
 fn the_derivation_is_the_reviewed_one() {
     reviewed("pendulum.derivation", &hodograph_program::artifact::encode(&Program::new(&derived()), "0"));
@@ -342,7 +343,7 @@ fn a_foreign_program_is_refused() {
     assert!(error.contains("Coordinate(0)"), "{error}");
 }
 
-/// What the interface says of methods and structs is what the Rust text declares.
+/// The interface and the Rust text declare the same methods and structs.
 #[test]
 fn the_interface_is_that_of_the_module() {
     let file: syn::File = syn::parse_str(&emitted()).unwrap();
@@ -367,21 +368,30 @@ fn the_interface_is_that_of_the_module() {
             }
         }
     }
-    // what makes, reads and changes a mechanism or an outcome is no routine
+    // methods that construct, read and change a mechanism or an outcome are not routines
     declared.retain(|name, _| !["parameters", "set_parameters", "outcome"].contains(&name.as_str()));
 
     let offered = interface(&mechanism(), &Program::new(&derived()), "pendulum").unwrap();
     let methods: BTreeMap<String, (Vec<String>, String)> = offered
         .methods
         .iter()
-        .map(|method| {
+        .flat_map(|method| {
             let each = |argument| text(offers::declared(std::slice::from_ref(argument), &krate));
             let taken = method.arguments.iter().map(each).map(|taken| taken.trim_end_matches(',').to_owned());
-            (method.name.clone(), (taken.collect(), format!("->{}", text(method.result(&krate)))))
+            let taken: Vec<String> = taken.collect();
+            let in_place = method.in_place.as_ref().map(|in_place| {
+                let out = format!("out:&mut{}", text(method.answer.tokens(&krate)));
+                let failure = text(method.failure.tokens(&krate));
+                let result = format!("->::core::result::Result<(),{failure}>");
+                (in_place.into.to_string(), (taken.iter().cloned().chain([out]).collect(), result))
+            });
+            let by_value =
+                (method.name.clone(), (taken.clone(), format!("->{}", text(method.result(&krate)))));
+            [Some(by_value), in_place].into_iter().flatten()
         })
         .collect();
     assert_eq!(methods, declared);
-    assert_eq!(methods.len(), 13);
+    assert_eq!(methods.len(), 18);
 
     let fields = |item: &syn::Item| match item {
         syn::Item::Struct(record) => {

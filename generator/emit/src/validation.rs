@@ -8,7 +8,7 @@ use super::record::number;
 use hodograph_model::arithmetic::Function;
 use hodograph_model::model::mechanism::{Body, DefinitionValue, Scalar};
 
-/// Expressions nested deeper than this are not checked.
+/// Expressions that are nested deeper than this are not checked.
 const DEPTH: usize = 64;
 
 impl Emitter<'_> {
@@ -28,7 +28,8 @@ impl Emitter<'_> {
         quote! { #(#checks)* }
     }
 
-    /// The inertia components of a body. One about another point than the mass centre is also one of a body.
+    /// The inertia components of a body. Components about another point than the mass centre must be
+    /// possible, too.
     fn inertia(&self, body: &Body) -> Option<Vec<TokenStream>> {
         body.inertia.as_ref()?.components.iter().map(|component| self.scalar(component, DEPTH)).collect()
     }

@@ -14,17 +14,17 @@ pub fn local(value: Value) -> Ident {
     format_ident!("v{}", value.0)
 }
 
-/// Where a routine finds what depends on parameters alone.
+/// The place of values that depend on parameters alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// in a method: fields of `self`
     Method,
-    /// at construction: local variables, in twice the digits
+    /// at construction: local variables, in double-double arithmetic
     Construction,
 }
 
 impl Emitter<'_> {
-    /// The statement that computes a value; `None` where the value needs none.
+    /// The statement that computes a value; `None` if it needs none.
     pub fn statement(&self, value: Value, place: Place) -> Option<TokenStream> {
         let name = local(value);
         let operation = self.program.operation(value);
@@ -80,7 +80,7 @@ impl Emitter<'_> {
         quote!(#from::#function(#(#arguments),*))
     }
 
-    /// Where the runtime has its support functions: at construction they are of twice the digits.
+    /// The module of the runtime's support functions: at construction those in double-double arithmetic.
     fn support(&self, place: Place) -> TokenStream {
         let krate = self.krate;
         match place {
@@ -89,7 +89,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// A number from outside in the digits of its place.
+    /// An input in the precision of its place.
     fn exactly(&self, number: TokenStream, place: Place) -> TokenStream {
         let from = self.support(place);
         match place {
@@ -98,7 +98,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Where a number from outside comes in.
+    /// The expression of an input.
     fn input(&self, input: Input, place: Place) -> TokenStream {
         let (record, variable, index) = match input {
             Input::Time => return quote!(time),

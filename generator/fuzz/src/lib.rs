@@ -38,7 +38,7 @@ pub fn run_inline(text: &str) {
     // a text that both can read means the same to both
     if checked.mechanism.is_some() {
         assert!(check(&file).mechanism.is_some(), "inline and file differ");
-        assert_eq!(model_hash(&source), model_hash(&file));
+        assert_eq!(model_hash(source), model_hash(&file));
     }
 }
 
@@ -50,13 +50,13 @@ impl Random {
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         (0..4).for_each(|_| {
-            random.next();
+            random.bits();
         });
         random
     }
 
     /// The next number.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -65,7 +65,7 @@ impl Random {
 
     /// Below a bound.
     pub fn below(&mut self, bound: usize) -> usize {
-        (self.next() >> 16) as usize % bound.max(1)
+        (self.bits() >> 16) as usize % bound.max(1)
     }
 }
 
@@ -207,7 +207,7 @@ pub fn mutate(models: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
         let end = (at + length).min(text.len());
         match random.below(9) {
             0 => drop(text.drain(at..end)),
-            1 => text[at] = random.next() as u8,
+            1 => text[at] = random.bits() as u8,
             2 => text[at] ^= 1 << random.below(8),
             3 | 4 => {
                 let word = WORDS[random.below(WORDS.len())].as_bytes();

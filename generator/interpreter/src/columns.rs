@@ -15,7 +15,6 @@ use hodograph_program::program::Quantity;
 
 use crate::InterpretedMechanism;
 use crate::contacts::{COLLISION_NEEDS, NO_COLLISION};
-use crate::intern::intern;
 use crate::routines::{OfContact, Request};
 
 /// So many rows are one task for a core.
@@ -72,18 +71,12 @@ impl InterpretedMechanism {
     /// Prepares quantities for many states, at the mechanism's parameters; those that it has not are left
     /// out.
     pub fn columns(&self, quantities: &[Quantity]) -> Columns {
-        Columns::new(self.program(), self.constants(), quantities)
+        Columns::new(&self.program, &self.constants, quantities)
     }
 
     /// The error of a state that [`Columns`] gives a row.
     pub fn state_error(&self, failed: Failed) -> StateError {
-        match failed {
-            Failed::Singular(guard) => {
-                let message = self.program().guards.get(guard).map_or("", |guard| guard.message.as_str());
-                StateError::Singular { what: intern(message) }
-            }
-            Failed::NotFinite => StateError::NotFinite,
-        }
+        self.error_of_state(failed)
     }
 
     /// Prepares the collisions of a contact for many states.

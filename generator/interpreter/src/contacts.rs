@@ -8,15 +8,15 @@ use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
     Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ComponentKind,
-    ContactMode, ContactOutcome, ContactState, ContactSurface, Contacts, ImpactError, Law, ReducedMatrix,
-    RelativeRotation, State, StateError, StatedLaw, Surface,
+    ContactMode, ContactOutcome, ContactState, ContactSurface, Contacts, Distance, ImpactError, Law,
+    ReducedMatrix, RelativeRotation, State, StateError, StatedLaw, Surface,
 };
-use hodograph_model::model::mechanism::{Law as Stated, Mechanism};
+use hodograph_model::model::mechanism::Mechanism;
 use hodograph_program::program::operation::Operation;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
 use crate::InterpretedMechanism;
-use crate::routines::{CLOSED, COLLISION, OF_EACH, OfContact, Request};
+use crate::routines::{CLOSED, COLLISION, NEAR, OF_EACH, OfContact, OfSeveral, Request};
 
 /// Without these a contact has no collision.
 pub const COLLISION_NEEDS: &[ContactQuantity] = COLLISION.split_at(6).0;
@@ -29,7 +29,7 @@ const CORE: usize = 3 + 3 + 3 + 3 + 6;
 impl InterpretedMechanism {
     /// How many numbers the program has for a quantity of a contact.
     pub(crate) fn size(&self, contact: usize, quantity: ContactQuantity) -> usize {
-        self.program()
+        self.program
             .output(Quantity::Contact(contact as u32, quantity))
             .map_or(0, |output| output.values.len())
     }
@@ -45,6 +45,24 @@ impl InterpretedMechanism {
         let request = Request::Contact(contact, OfContact::One(quantity));
         let [length] = self.array::<1>(request, state, &[])?;
         Ok(self.has(request).then_some(length))
+    }
+
+    /// Computes something of all contacts of the mechanism, for one routine serves every choice of them; `false` where
+    /// it cannot be told of some, of which these may be none.
+    fn of_all_contacts(
+        &self,
+        contacts: &[usize],
+        what: OfSeveral,
+        expected: usize,
+        state: &State<'_>,
+        with: impl FnMut(usize, f64),
+    ) -> Result<bool, StateError> {
+        self.check(state)?;
+        for &contact in contacts {
+            self.exists(ComponentKind::Contact, contact)?;
+        }
+        let all: Vec<usize> = (0..self.model.contacts.len()).collect();
+        Ok(self.compute_together(what, &all, expected, state, with).is_ok())
     }
 
     fn vector_of_contact(
@@ -70,7 +88,7 @@ impl InterpretedMechanism {
         contact: &Contact<f64>,
         surface: &impl ContactSurface<f64>,
     ) -> Result<Resolved<f64>, ImpactError<f64>> {
-        match self.program().structures.get(index) {
+        match self.program.structures.get(index) {
             Some(Structure::Planar) => resolve_structured::<Planar, f64>(contact, surface),
             Some(Structure::Balanced) => resolve_structured::<Balanced, f64>(contact, surface),
             Some(Structure::Diagonal) => resolve_structured::<Diagonal, f64>(contact, surface),
@@ -82,10 +100,10 @@ impl InterpretedMechanism {
     /// The speeds after an impulse along the contact basis; what is 0 whatever the state is not added.
     fn after(&self, contact: usize, speeds: &mut [f64], response: &[f64], impulse: [f64; 3]) {
         let quantity = Quantity::Contact(contact as u32, ContactQuantity::Response);
-        let Some(output) = self.program().output(quantity) else { return };
+        let Some(output) = self.program.output(quantity) else { return };
         let zero = |place: usize| {
             output.values.get(place).is_none_or(|&value| {
-                matches!(self.program().operation(value), Operation::Constant(bits) if bits.get() == 0.0)
+                matches!(self.program.operation(value), Operation::Constant(bits) if bits.get() == 0.0)
             })
         };
         for (row, (speed, response)) in speeds.iter_mut().zip(response.chunks_exact(3)).enumerate() {
@@ -151,6 +169,7 @@ impl InterpretedMechanism {
         Ok(self.outcome(contact, &numbers, speeds, resolve)?)
     }
 
+    #[cfg(feature = "internal")]
     /// The collision of a contact of which `numbers` are those of `COLLISION`. `speeds` are those before it
     /// and become those after it.
     pub(crate) fn struck_by_numbers(
@@ -174,16 +193,7 @@ impl InterpretedMechanism {
         let hit = resolve(&known)?;
         let response = CORE + self.size(contact, ContactQuantity::Response);
         self.after(contact, speeds, numbers.get(CORE..response).unwrap_or(&[]), hit.impulse.into());
-        Ok(CollisionOutcome {
-            normal: known.normal,
-            tangent: hit.tangent,
-            binormal: hit.binormal,
-            approach: hit.approach,
-            reduced: hit.reduced,
-            impulse_on_point: hit.impulse_on_point,
-            energy_change: hit.energy_change,
-            impact: hit.impact,
-        })
+        Ok(hit.outcome(known.normal))
     }
 
     /// A closed contact of which `decide` finds mode and force.
@@ -216,12 +226,7 @@ impl InterpretedMechanism {
 /// Friction and restitution that a model states for a contact.
 pub fn stated_surface(model: &Mechanism, contact: usize) -> Option<Surface<f64>> {
     let stated = model.contacts.get(contact)?.surface?;
-    let law = match stated.law {
-        Stated::Newton => Law::Newton,
-        Stated::Poisson => Law::Poisson,
-        Stated::Stronge => Law::Stronge,
-    };
-    Some(Surface { mu: stated.mu, e: stated.e, law })
+    Some(Surface { mu: stated.mu, e: stated.e, law: Law::named(stated.law)? })
 }
 
 /// What a model states of a contact beyond that.
@@ -287,12 +292,70 @@ impl Contacts for InterpretedMechanism {
         self.length_at_contact(contact, ContactQuantity::Validity, state)
     }
 
+    fn gaps(
+        &self,
+        contacts: &[usize],
+        state: &State<'_>,
+        distances: &mut [Distance],
+    ) -> Result<(), StateError> {
+        check_length(distances, contacts.len(), "the distances")?;
+        if contacts.len() > 1 {
+            let mut known = vec![Distance::default(); self.model.contacts.len()];
+            let slots: Vec<(usize, ContactQuantity)> = (0..known.len())
+                .flat_map(|contact| NEAR.map(|quantity| (contact, quantity)))
+                .filter(|&(contact, quantity)| self.size(contact, quantity) > 0)
+                .collect();
+            let set = |index: usize, length: f64| {
+                let (contact, quantity) = slots[index];
+                let Distance { gap, validity } = &mut known[contact];
+                *if quantity == ContactQuantity::Gap { gap } else { validity } = Some(length);
+            };
+            if self.of_all_contacts(contacts, OfSeveral::Near, slots.len(), state, set)? {
+                distances
+                    .iter_mut()
+                    .zip(contacts)
+                    .for_each(|(distance, &contact)| *distance = known[contact]);
+                return Ok(());
+            }
+        }
+        for (&contact, distance) in contacts.iter().zip(distances) {
+            let (gap, validity) = (self.gap(contact, state)?, self.validity(contact, state)?);
+            *distance = Distance { gap, validity };
+        }
+        Ok(())
+    }
+
+    fn contact_velocities(
+        &self,
+        contacts: &[usize],
+        state: &State<'_>,
+        velocities: &mut [Vector3<f64>],
+    ) -> Result<(), StateError> {
+        check_length(velocities, contacts.len(), "the velocities")?;
+        if contacts.len() > 1 {
+            let mut known = vec![Vector3::zeros(); self.model.contacts.len()];
+            let expected = 3 * known.len();
+            let set = |index: usize, number: f64| known[index / 3][index % 3] = number;
+            if self.of_all_contacts(contacts, OfSeveral::Moving, expected, state, set)? {
+                velocities
+                    .iter_mut()
+                    .zip(contacts)
+                    .for_each(|(velocity, &contact)| *velocity = known[contact]);
+                return Ok(());
+            }
+        }
+        for (&contact, velocity) in contacts.iter().zip(velocities) {
+            *velocity = self.contact_velocity(contact, state)?;
+        }
+        Ok(())
+    }
+
     fn surface(&self, contact: usize) -> Option<Surface<f64>> {
-        stated_surface(self.model(), contact)
+        stated_surface(&self.model, contact)
     }
 
     fn stated_law(&self, contact: usize) -> StatedLaw<'_> {
-        stated_law(self.model(), contact)
+        stated_law(&self.model, contact)
     }
 
     fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
@@ -363,7 +426,7 @@ impl Contacts for InterpretedMechanism {
         }
         // The numbers come in the order of the quantities.
         let of_each = 6 * p + 6;
-        self.compute_together(contacts, n + p + k * of_each, state, |index, number| {
+        self.compute_together(OfSeveral::Closed, contacts, n + p + k * of_each, state, |index, number| {
             let slot = if index < n {
                 &mut values.coordinate_rates[index]
             } else if index < n + p {

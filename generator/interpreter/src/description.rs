@@ -1,7 +1,9 @@
 //! What a model declares, as the trait `Mechanism` describes it.
 
-use hodograph::{Component, ComponentKind};
+use hodograph::generated::write;
+use hodograph::{Component, ComponentKind, StateError};
 use hodograph_model::model::mechanism::{Mechanism, Orientation, Variable};
+use hodograph_model::numeric;
 
 /// The quantities of a kind that a model declares with units.
 pub fn declared(model: &Mechanism, kind: ComponentKind) -> Box<dyn Iterator<Item = &Variable> + '_> {
@@ -38,6 +40,19 @@ pub fn component(model: &Mechanism, kind: ComponentKind, index: usize) -> Option
             unit: if quantity.unit.is_empty() { "1" } else { &quantity.unit },
         }),
     }
+}
+
+/// Writes the values that the model states: of coordinates, independent speeds and inputs.
+///
+/// # Errors
+///
+/// A slice has another length.
+pub fn initial_state(model: &Mechanism, slices: [&mut [f64]; 3]) -> Result<(), StateError> {
+    let state = numeric::State::of(model);
+    let [coordinates, speeds, inputs] = slices;
+    write(coordinates, &state.coordinates, "coordinates")?;
+    write(speeds, &state.speeds, "speeds")?;
+    write(inputs, &state.inputs, "inputs")
 }
 
 /// The numbers of the coordinates of each quaternion.

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use hodograph::generated::check_length;
 use hodograph::{ParameterError, State, StateError};
 use hodograph_model::model::mechanism::{self, Mechanism};
-use hodograph_model::{check, rendering};
-use hodograph_program::interpret::{Arguments, Constants};
+use hodograph_program::interpret::{Arguments, Constants, Failed};
 use hodograph_program::program::Program;
-use hodograph_program::{artifact, files, program};
+use hodograph_program::{artifact, program};
 
-use crate::routines::{Request, Routines};
-use crate::{Error, description, parameters};
+use crate::intern::intern;
+use crate::routines::{OfSeveral, Request, Routines};
+use crate::{Error, description, motion, parameters, read};
 
 /// A mechanism whose equations are interpreted. It has the traits [`hodograph::Mechanism`] and
 /// [`hodograph::Contacts`].
@@ -21,23 +21,34 @@ use crate::{Error, description, parameters};
 /// model and the program.
 #[derive(Clone, Debug)]
 pub struct InterpretedMechanism {
-    model: Arc<Mechanism>,
-    program: Arc<Program>,
+    pub(crate) model: Arc<Mechanism>,
+    pub(crate) program: Arc<Program>,
     /// all, in file order, `fixed` ones too
     parameters: Vec<f64>,
-    constants: Constants,
+    pub(crate) constants: Constants,
     routines: Routines,
     quaternions: Vec<[usize; 4]>,
     dependent_coordinates: Vec<usize>,
 }
 
 impl InterpretedMechanism {
-    /// The mechanism of a model and its program, with the parameters that the model states.
+    /// Reads a model file and the derivation beside it.
     ///
     /// # Errors
     ///
     /// [`Error`]
-    pub fn new(model: Mechanism, program: Program) -> Result<Self, Error> {
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let (model, source) = read::model(path)?;
+        let kept = artifact::place::beside(path);
+        let advice = format!("run `hodograph derive {}`", path.display());
+        let program = artifact::load(&kept, &source).program().map_err(|fault| {
+            Error::Derivation(format!("the derivation {} {fault}; {advice}", kept.display()))
+        })?;
+        Self::with_stated_parameters(model, program)
+    }
+
+    /// The mechanism of a model and its program, with the parameters that the model states.
+    pub(crate) fn with_stated_parameters(model: Mechanism, program: Program) -> Result<Self, Error> {
         let value = |parameter: &mechanism::Variable| {
             parameter
                 .value
@@ -48,37 +59,7 @@ impl InterpretedMechanism {
         Self::with(model, program, parameters)
     }
 
-    /// The mechanism of a model and its program, with these parameters: all that are not `fixed`, in the
-    /// order of the model.
-    ///
-    /// # Errors
-    ///
-    /// [`Error`]
-    pub fn with_parameters(model: Mechanism, program: Program, parameters: &[f64]) -> Result<Self, Error> {
-        let all = parameters::all(&model, parameters)?;
-        Self::with(model, program, all)
-    }
-
-    /// Reads a model file and the derivation beside it.
-    ///
-    /// # Errors
-    ///
-    /// [`Error`]
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        let source = files::model(path);
-        let checked = check::check(&source);
-        let Some(model) = checked.mechanism else {
-            return Err(Error::Model(rendering::render(&checked.diagnostics, &source)));
-        };
-        let kept = artifact::place::beside(path);
-        let advice = format!("run `hodograph derive {}`", path.display());
-        let program = artifact::load(&kept, &source).program().map_err(|fault| {
-            Error::Derivation(format!("the derivation {} {fault}; {advice}", kept.display()))
-        })?;
-        Self::new(model, program)
-    }
-
-    fn with(model: Mechanism, program: Program, parameters: Vec<f64>) -> Result<Self, Error> {
+    pub(crate) fn with(model: Mechanism, program: Program, parameters: Vec<f64>) -> Result<Self, Error> {
         program::fits(&model, &program).map_err(Error::Derivation)?;
         let constants = parameters::constants(&model, &program, &parameters)?;
         Ok(InterpretedMechanism {
@@ -92,19 +73,21 @@ impl InterpretedMechanism {
         })
     }
 
-    /// The model.
-    pub fn model(&self) -> &Mechanism {
-        &self.model
+    /// The greatest step of the integration of a motion, s; `driven` says whether inputs are functions of
+    /// time.
+    pub fn greatest_step(&self, driven: bool) -> f64 {
+        motion::greatest_step(&self.program, driven)
     }
 
-    /// The equations of the model.
-    pub fn program(&self) -> &Program {
-        &self.program
-    }
-
-    /// What the equations compute of the parameters alone.
-    pub fn constants(&self) -> &Constants {
-        &self.constants
+    /// The error of a state at which the program failed.
+    pub(crate) fn error_of_state(&self, failed: Failed) -> StateError {
+        match failed {
+            Failed::Singular(guard) => {
+                let message = self.program.guards.get(guard).map_or("", |guard| guard.message.as_str());
+                StateError::Singular { what: intern(message) }
+            }
+            Failed::NotFinite => StateError::NotFinite,
+        }
     }
 
     /// All parameters in file order, `fixed` ones too.
@@ -152,22 +135,23 @@ impl InterpretedMechanism {
     ) -> Result<(), StateError> {
         let arguments = arguments(state, accelerations);
         let prepared = self.routines.get(request, &self.program, &self.constants);
-        prepared.evaluate(&arguments, with).map_err(|failed| self.state_error(failed))
+        prepared.evaluate(&arguments, with).map_err(|failed| self.error_of_state(failed))
     }
 
-    /// Computes what forces of closed contacts follow from, number by number.
+    /// Computes what is asked of several contacts, number by number.
     pub(crate) fn compute_together(
         &self,
+        what: OfSeveral,
         contacts: &[usize],
         expected: usize,
         state: &State<'_>,
         with: impl FnMut(usize, f64),
     ) -> Result<(), StateError> {
-        let prepared = self.routines.together(contacts, &self.program, &self.constants);
+        let prepared = self.routines.together(what, contacts, &self.program, &self.constants);
         if prepared.len() != expected {
-            return Err(StateError::Undefined { what: "closed contact" });
+            return Err(StateError::Undefined { what: "several contacts" });
         }
-        prepared.evaluate(&arguments(state, &[]), with).map_err(|failed| self.state_error(failed))
+        prepared.evaluate(&arguments(state, &[]), with).map_err(|failed| self.error_of_state(failed))
     }
 
     /// Whether the program has what is requested.

@@ -5,7 +5,11 @@
 //! Its numbers have the same bits as those of the generated module. So a program that works on many models,
 //! or is called from another language, needs no compiler.
 //!
-//! [`columns`] evaluates many states at once. A [`NumericMechanism`] needs the model alone, and is slower.
+//! A [`NumericMechanism`] needs the model alone, and is slower.
+//!
+//! With the feature `internal` the other packages of Hodograph reach the model and the equations, and evaluate
+//! many states at once (`columns`). The types that this shows belong to packages that promise nothing from
+//! version to version.
 //!
 //! ```no_run
 //! use hodograph::{ComponentKind, Mechanism};
@@ -16,16 +20,20 @@
 //! # Ok::<(), hodograph_interpreter::Error>(())
 //! ```
 
+#[cfg(feature = "internal")]
 pub mod columns;
 mod contacts;
 mod description;
 mod error;
 mod intern;
+#[cfg(feature = "internal")]
+mod internal;
 mod interpreted;
 mod mechanism;
 pub mod motion;
 mod numeric;
 mod parameters;
+mod read;
 mod routines;
 
 pub use error::Error;

@@ -3,7 +3,6 @@
 use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};
 use hodograph::{Component, ComponentKind, Mechanism, ParameterError, State, StateError};
-use hodograph_model::numeric;
 use hodograph_program::program::{PointQuantity, Quantity};
 
 use crate::routines::Request;
@@ -13,7 +12,7 @@ impl InterpretedMechanism {
     /// The quantities that the program has and that are offered by name.
     fn named(&self) -> impl Iterator<Item = Quantity> + '_ {
         let has = |quantity: &Quantity| {
-            self.program().output(*quantity).is_some_and(|output| !output.values.is_empty())
+            self.program.output(*quantity).is_some_and(|output| !output.values.is_empty())
         };
         Quantity::named().filter(has)
     }
@@ -46,13 +45,13 @@ impl InterpretedMechanism {
 
 impl Mechanism for InterpretedMechanism {
     fn name(&self) -> &str {
-        &self.model().name
+        &self.model.name
     }
 
     fn count(&self, kind: ComponentKind) -> usize {
         match kind {
             ComponentKind::Quantity => self.named().count(),
-            kind => description::count(self.model(), kind),
+            kind => description::count(&self.model, kind),
         }
     }
 
@@ -62,7 +61,7 @@ impl Mechanism for InterpretedMechanism {
                 let row = self.named().nth(index)?.description();
                 Some(Component { name: row.word, unit: row.unit })
             }
-            kind => description::component(self.model(), kind, index),
+            kind => description::component(&self.model, kind, index),
         }
     }
 
@@ -71,7 +70,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn parameter_values(&self, values: &mut [f64]) -> Result<(), StateError> {
-        let run_time = parameters::run_time(self.model(), self.all_parameters());
+        let run_time = parameters::run_time(&self.model, self.all_parameters());
         write(values, &run_time, "parameters")
     }
 
@@ -85,14 +84,11 @@ impl Mechanism for InterpretedMechanism {
         speeds: &mut [f64],
         inputs: &mut [f64],
     ) -> Result<(), StateError> {
-        let state = numeric::State::of(self.model());
-        write(coordinates, &state.coordinates, "coordinates")?;
-        write(speeds, &state.speeds, "speeds")?;
-        write(inputs, &state.inputs, "inputs")
+        description::initial_state(&self.model, [coordinates, speeds, inputs])
     }
 
     fn normalise(&self, coordinates: &mut [f64]) -> Result<(), StateError> {
-        check_length(coordinates, self.model().coordinates.len(), "coordinates")?;
+        check_length(coordinates, self.model.coordinates.len(), "coordinates")?;
         normalise_quaternions(coordinates, self.quaternions());
         Ok(())
     }
@@ -161,7 +157,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn quantity_shape(&self, quantity: usize) -> Option<(usize, usize)> {
-        let output = self.program().output(self.named().nth(quantity)?)?;
+        let output = self.program.output(self.named().nth(quantity)?)?;
         Some((output.rows, output.columns))
     }
 

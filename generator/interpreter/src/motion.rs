@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use hodograph::{ComponentKind, Contacts, ImpactError, Law, State, Surface};
+use hodograph::{Cause, ComponentKind, Contacts, ImpactError, Law, State, Surface};
 use hodograph_program::program::Program;
 use hodograph_program::program::graph::Input;
 use hodograph_program::program::operation::Operation;
@@ -12,13 +12,13 @@ use hodograph_program::program::operation::Operation;
 pub const STEP: f64 = 0.01;
 /// Greatest step of the integration where something depends on time by itself, s: it must not be stepped
 /// over.
-const STEP_OF_TIME: f64 = 0.05;
+pub const STEP_OF_TIME: f64 = 0.05;
 /// The least tolerance: below it the roundings of a step exceed what is asked for, and no step is short
 /// enough.
 pub const LEAST_TOLERANCE: f64 = 1e-16;
 
-/// The greatest step of the integration, s; `driven` says whether inputs are functions of time.
-pub fn greatest_step(program: &Program, driven: bool) -> f64 {
+/// The greatest step of the integration of a motion by this program, s.
+pub(crate) fn greatest_step(program: &Program, driven: bool) -> f64 {
     let is_time = |operation: &Operation| matches!(operation, Operation::Input(Input::Time));
     if driven || program.operations.iter().any(is_time) { STEP_OF_TIME } else { f64::INFINITY }
 }
@@ -127,6 +127,13 @@ impl fmt::Display for NoSurface {
                 write!(out, "contact {} has no surface: {} is missing", self.contact, self.missing.join(", "))
             }
         }
+    }
+}
+
+impl NoSurface {
+    /// Its cause.
+    pub const fn cause(&self) -> Cause {
+        Cause::NoSurface
     }
 }
 

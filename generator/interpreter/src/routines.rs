@@ -123,9 +123,39 @@ pub const OF_EACH: [ContactQuantity; 4] = [
     ContactQuantity::FreeAcceleration,
 ];
 
-/// The routines of sets of closed contacts.
+/// How far all contacts are from being closed: what is asked of each that has it, in this order.
+pub const NEAR: [ContactQuantity; 2] = [ContactQuantity::Gap, ContactQuantity::Validity];
+
+/// What is asked of several contacts in one pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum OfSeveral {
+    /// [`TOGETHER`], then [`OF_EACH`]
+    Closed,
+    /// [`NEAR`]
+    Near,
+    /// the velocities
+    Moving,
+}
+
+impl OfSeveral {
+    /// What is asked of contacts, in order.
+    fn quantities(self, contacts: &[usize]) -> Vec<Quantity> {
+        let (whole, of_each): (&[Quantity], &[ContactQuantity]) = match self {
+            OfSeveral::Closed => (&TOGETHER, &OF_EACH),
+            OfSeveral::Near => (&[], &NEAR),
+            OfSeveral::Moving => (&[], &[ContactQuantity::Velocity]),
+        };
+        let each = |&contact: &usize| of_each.iter().map(move |&of| Quantity::Contact(contact as u32, of));
+        whole.iter().copied().chain(contacts.iter().flat_map(each)).collect()
+    }
+}
+
+/// What is asked of which contacts.
+type Asked = (OfSeveral, Vec<usize>);
+
+/// The routines of sets of contacts.
 #[derive(Debug, Default)]
-struct Sets(RwLock<BTreeMap<Vec<usize>, Arc<Prepared>>>);
+struct Sets(RwLock<BTreeMap<Asked, Arc<Prepared>>>);
 
 /// So many sets are kept: more are rarely closed in one motion.
 const MOST_SETS: usize = 64;
@@ -160,19 +190,23 @@ impl Routines {
             .get_or_init(|| Prepared::new(program, constants, &request.quantities()))
     }
 
-    /// The routine of a set of closed contacts.
-    pub fn together(&self, contacts: &[usize], program: &Program, constants: &Constants) -> Arc<Prepared> {
-        let known = self.sets.0.read().unwrap_or_else(PoisonError::into_inner).get(contacts).cloned();
+    /// The routine of a set of contacts.
+    pub fn together(
+        &self,
+        what: OfSeveral,
+        contacts: &[usize],
+        program: &Program,
+        constants: &Constants,
+    ) -> Arc<Prepared> {
+        let key = (what, contacts.to_vec());
+        let known = self.sets.0.read().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
         known.unwrap_or_else(|| {
-            let each = |&contact: &usize| OF_EACH.map(|of| Quantity::Contact(contact as u32, of));
-            let quantities: Vec<Quantity> =
-                TOGETHER.into_iter().chain(contacts.iter().flat_map(each)).collect();
-            let prepared = Arc::new(Prepared::new(program, constants, &quantities));
+            let prepared = Arc::new(Prepared::new(program, constants, &what.quantities(contacts)));
             let mut sets = self.sets.0.write().unwrap_or_else(PoisonError::into_inner);
             if sets.len() >= MOST_SETS {
                 sets.clear();
             }
-            sets.insert(contacts.to_vec(), Arc::clone(&prepared));
+            sets.insert(key, Arc::clone(&prepared));
             prepared
         })
     }

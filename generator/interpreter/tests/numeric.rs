@@ -280,7 +280,7 @@ fn wrong_parameters_states_and_numbers_are_refused() {
     assert_eq!(written(count, |out| numeric.parameter_values(out)), before);
     let none = State { time: 0.0, coordinates: &[], speeds: &[], inputs: &[] };
     assert_eq!(numeric.kinetic_energy(&none).unwrap_err().kind(), "wrong_length");
-    assert_eq!(numeric.gap(99, &none).unwrap_err().kind(), "missing");
+    assert_eq!(numeric.gap(99, &none).unwrap_err().kind(), "unknown_name");
     let wild = State { time: 0.0, coordinates: &[f64::NAN; 2], speeds: &[0.0; 2], inputs: &[] };
     assert!(numeric.accelerations(&wild, &mut [0.0; 2]).is_err());
     assert!(numeric.position(1, &wild).is_err());

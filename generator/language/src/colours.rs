@@ -1,4 +1,4 @@
-//! What each word is, for colours.
+//! The kind of each word, for syntax highlighting.
 
 use hodograph_model::model::names::Symbol;
 use hodograph_model::span::Span;
@@ -8,7 +8,7 @@ use hodograph_model::words;
 
 use crate::Document;
 
-/// What a word is.
+/// The kind of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Kind {
@@ -34,14 +34,14 @@ pub enum Kind {
     Given,
 }
 
-/// A word with its colour. It stands on one line.
+/// A word with its kind; it is on a single line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coloured {
-    /// where
+    /// its place
     pub span: Span,
-    /// what it is
+    /// its kind
     pub kind: Kind,
-    /// it is declared here
+    /// whether the word is declared here
     pub declares: bool,
 }
 
@@ -126,7 +126,7 @@ impl Document {
         }
     }
 
-    /// A comment as one piece on each line.
+    /// A comment, divided into one piece per line.
     fn on_lines(&self, span: Span, kind: Kind, out: &mut Vec<Coloured>) {
         for line in self.text.line_of(span.start)..=self.text.line_of(span.end.max(span.start)) {
             let line = self.text.line(line);
@@ -138,7 +138,7 @@ impl Document {
     }
 }
 
-/// The length of a block comment, with those within.
+/// The length of a block comment, including nested ones.
 fn block(text: &str) -> usize {
     let (mut depth, mut at) = (0_usize, 0);
     while let Some(i) = text[at..].find(['/', '*']).map(|i| at + i) {

@@ -1,4 +1,4 @@
-//! What could be written at a place, what fits best first.
+//! Proposals for the text at a place, the best first.
 
 use hodograph_model::model::names::Symbol;
 use hodograph_model::model::symbols::Declared;
@@ -13,10 +13,10 @@ use crate::context::{Context, Kinds, call, context};
 use crate::expected::Expected;
 use crate::hover::in_words;
 
-/// What a proposal is.
+/// The kind of a proposal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Proposed {
-    /// a declared or given name
+    /// a declared or predefined name
     Name(Symbol),
     /// a word of the language
     Word,
@@ -26,44 +26,44 @@ pub enum Proposed {
     Field,
     /// a function
     Function,
-    /// what stands behind the dot of a frame
+    /// a member of a frame, after the dot
     Member,
     /// a unit
     Unit,
 }
 
-/// Something that could be written.
+/// A proposal for completion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Proposal {
-    /// what is written
+    /// the text
     pub label: String,
-    /// what it is
+    /// its kind
     pub kind: Proposed,
-    /// its dimension, or how it is written
+    /// its dimension, or its syntax
     pub detail: String,
     /// its documentation
     pub docs: String,
-    /// 0 for what fits the dimension, 1 for what may, 2 for what does not
+    /// 0 if its dimension fits, 1 if it may fit, 2 if it does not
     pub rank: u8,
 }
 
-/// A function or load and the argument that is being written.
+/// A function or load, and its argument at the cursor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// how it is written
+    /// its syntax
     pub form: &'static str,
-    /// what it means
+    /// its meaning
     pub meaning: &'static str,
-    /// the argument, from 0
+    /// index of the argument, from 0
     pub argument: usize,
 }
 
 impl Document {
-    /// The word that is being written at a place, if one is, and how many tokens stand before it.
+    /// The incomplete word at a place, if there is one, and the number of tokens before it.
     fn word_before(&self, offset: u32) -> (Option<Span>, usize) {
         let tokens = self.tokens();
         let before = tokens.partition_point(|token| token.span.end < offset);
-        // of two tokens that touch the place the name counts
+        // of two tokens that touch at the place, the name is taken
         let touching = (before..tokens.len()).take_while(|i| tokens[*i].span.start < offset);
         match touching.clone().find(|i| tokens[*i].kind == TokenKind::Name) {
             Some(i) => (Some(tokens[i].span), i),
@@ -71,13 +71,13 @@ impl Document {
         }
     }
 
-    /// Whether a place lies in a comment.
+    /// Whether a place is inside a comment.
     fn in_comment(&self, offset: u32) -> bool {
         let is_comment =
             |kind| matches!(kind, crate::colours::Kind::Comment | crate::colours::Kind::Documentation);
         let line = self.text.line_of(offset);
         let whole = self.text.line(line);
-        // a comment of one line, or one of several in which the place lies
+        // a line comment, or a block comment around the place
         if !self.text.at(whole).contains("//") && !self.text.as_str().contains("/*") {
             return false;
         }
@@ -86,13 +86,13 @@ impl Document {
             .any(|word| is_comment(word.kind) && word.span.start < offset && offset <= word.span.end)
     }
 
-    /// What could be written at a place, what fits best first.
+    /// The proposals at a place, the best first.
     pub fn completion(&self, offset: u32) -> Vec<Proposal> {
         if self.in_comment(offset) {
             return Vec::new();
         }
         let (word, count) = self.word_before(offset);
-        // within a number there is nothing to complete
+        // numbers are not completed
         let tokens = self.tokens();
         if count > 0 && tokens[count - 1].kind == TokenKind::Number && tokens[count - 1].span.end >= offset {
             return Vec::new();
@@ -141,7 +141,7 @@ impl Document {
         missing.map(|word| proposal(Some(word), word.text, Proposed::Section)).collect()
     }
 
-    /// Units that are used in the model come first.
+    /// Units that occur in the model come first.
     fn unit_proposals(&self, offset: u32) -> Vec<Proposal> {
         let used = self.units();
         let used = used.into_iter().filter(|span| offset < span.start || span.end < offset);
@@ -209,7 +209,7 @@ impl Document {
             }
             (false, ..) => 0,
             (true, Some(wanted), Some(dimension)) if wanted == dimension && !other_kind => 0,
-            // times an axis it is one
+            // a scalar times an axis is a vector
             (true, Some(wanted), Some(dimension)) if wanted == dimension => 1,
             (true, Some(_), _) => 2,
             (true, None, _) => u8::from(!known || other_kind),
@@ -223,7 +223,7 @@ impl Document {
         Proposal { label, kind, detail, docs: declared.docs.clone(), rank }
     }
 
-    /// The function whose arguments are being written at a place.
+    /// The function whose arguments are at a place.
     pub fn signature(&self, offset: u32) -> Option<Signature> {
         let count = self.tokens().partition_point(|token| token.span.end <= offset);
         let (name, argument) = call(&self.tokens()[..count])?;
@@ -239,7 +239,7 @@ impl Document {
     }
 }
 
-/// Whether a symbol is of one of these kinds; where functions may stand, numbers may too.
+/// Whether a symbol is of one of these kinds; if functions are allowed, numbers are, too.
 fn of_kind(symbol: Symbol, kinds: Kinds, numbers: bool) -> bool {
     match symbol {
         Symbol::Parameter(_) => kinds.parameters,

@@ -1,4 +1,4 @@
-//! What could be written at a place, by the tokens before it: also where the text is not finished.
+//! What is allowed at a place, judged by the tokens before it; the text may be incomplete.
 
 use hodograph_model::model::mechanism::Kind;
 use hodograph_model::syntax::token::{Token, TokenKind};
@@ -31,7 +31,7 @@ pub struct Kinds {
 }
 
 impl Kinds {
-    /// What has a value.
+    /// names that have a value
     pub const VALUES: Kinds = Kinds {
         parameters: true,
         inputs: true,
@@ -55,60 +55,60 @@ impl Kinds {
     const FRAMES: Kinds = Kinds { frames: true, ..Kinds::NONE };
     const POINTS: Kinds = Kinds { points: true, ..Kinds::NONE };
     const BODIES: Kinds = Kinds { bodies: true, ..Kinds::NONE };
-    /// shapes alone
+    /// only shapes
     pub const SHAPES: Kinds = Kinds { shapes: true, ..Kinds::NONE };
     const CONTACTS: Kinds = Kinds { contacts: true, ..Kinds::NONE };
     const FRAMES_AND_BODIES: Kinds = Kinds { bodies: true, ..Kinds::FRAMES };
     const STARTS: Kinds = Kinds { parameters: true, coordinates: true, speeds: true, ..Kinds::NONE };
 }
 
-/// What could be written at a place.
+/// What is allowed at a place.
 #[derive(Clone, Debug)]
 pub enum Context {
-    /// a new name, or nothing that can be foreseen
+    /// a new name, or unknown
     Nothing,
     /// `mechanism`
     Start,
     /// the word of a section
     Sections,
-    /// these words
+    /// one of these words
     Words(Vec<&'static str>),
-    /// a field, of those that are not there yet
+    /// one of these fields, which are still missing
     Fields(Vec<&'static str>),
     /// a load
     Loads,
     /// a unit
     Unit,
-    /// behind the dot after a frame; whether it is the value of a frame
+    /// a member of a frame, after its dot
     Members {
-        /// under `frames`
+        /// whether it is the value of a frame
         orients: bool,
     },
-    /// an expression, with names of these kinds, functions if it says so, and axes of frames
+    /// an expression with names of these kinds and axes of frames
     Expression {
         /// names
         kinds: Kinds,
-        /// functions
+        /// whether functions are allowed
         functions: bool,
-        /// these words too
+        /// further words that are allowed
         words: Vec<&'static str>,
     },
     /// the name of a hypothesis or law
     Laws(&'static [words::Word]),
 }
 
-/// What is open at a place.
+/// An open bracket at a place.
 struct Level {
     bracket: char,
-    /// the index of the bracket
+    /// index of the bracket
     at: usize,
-    /// where the statement begins that is not finished
+    /// index of the first token of the incomplete statement
     start: usize,
-    /// how many commas stand before, within the bracket
+    /// number of commas in the bracket before the place
     commas: usize,
 }
 
-/// The brackets that are open behind the last of these tokens.
+/// The brackets that are open after the last token.
 fn levels(tokens: &[Token]) -> Vec<Level> {
     let mut open: Vec<Level> = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
@@ -148,15 +148,14 @@ fn levels(tokens: &[Token]) -> Vec<Level> {
     open
 }
 
-/// The function whose arguments are being written behind the last of these tokens, and the index of the
-/// argument.
+/// The function whose arguments are open after the last token, and the index of the argument.
 pub fn call(tokens: &[Token]) -> Option<(usize, usize)> {
     let open = levels(tokens);
     let inner = open.iter().rev().find(|level| level.bracket == '(' && level.at > 0)?;
     (tokens[inner.at - 1].kind == TokenKind::Name).then_some((inner.at - 1, inner.commas))
 }
 
-/// What separates entries behind the last of these tokens.
+/// The separator of entries after the last token.
 pub fn separator(tokens: &[Token]) -> char {
     let open = levels(tokens);
     let braces = open.iter().filter(|level| level.bracket == '{').count();
@@ -172,7 +171,7 @@ pub fn separator(tokens: &[Token]) -> char {
     }
 }
 
-/// What could be written behind the last of these tokens.
+/// What is allowed after the last token.
 pub fn context(tokens: &[Token]) -> Context {
     let open = levels(tokens);
     let Some(outer) = open.first() else {
@@ -194,7 +193,7 @@ pub fn context(tokens: &[Token]) -> Context {
     if let Some(arguments) = arguments(tokens, &open) {
         return arguments;
     }
-    // the innermost braces say what the statement is; parentheses within it are parts of expressions
+    // the innermost braces determine the statement; parentheses inside them belong to expressions
     let braces: Vec<&Level> = open.iter().filter(|level| level.bracket == '{').collect();
     let Some(inner) = braces.last() else { return Context::Nothing };
     let statement = &tokens[inner.start..];
@@ -205,7 +204,7 @@ pub fn context(tokens: &[Token]) -> Context {
     entry(section, statement)
 }
 
-/// Functions whose arguments are names, or words.
+/// Functions whose arguments are names or words.
 fn arguments(tokens: &[Token], open: &[Level]) -> Option<Context> {
     let inner = open.last().filter(|level| level.bracket == '(')?;
     let name = tokens.get(inner.at.checked_sub(1)?)?;
@@ -222,7 +221,7 @@ fn arguments(tokens: &[Token], open: &[Level]) -> Option<Context> {
     })
 }
 
-/// The fields of the record that is open.
+/// The fields of the open record.
 fn record(section: Section, tokens: &[Token], brace: &Level, depth: usize) -> Vec<&'static str> {
     let known: &[&str] = match section {
         Section::Shapes => {
@@ -253,7 +252,7 @@ fn expression(kinds: Kinds) -> Context {
 fn field(section: Section, statement: &[Token], known: Vec<&'static str>, before: &[Token]) -> Context {
     let names = |kinds, words: Vec<&'static str>| Context::Expression { kinds, functions: false, words };
     let Some(colon) = statement.iter().position(|token| token.is_sign(':')) else {
-        // the shapes of a pair stand in place of a field
+        // the shapes of a pair take the place of a field
         if section == Section::Contacts && !statement.is_empty() {
             let on = statement.len() > 1;
             return if on { names(Kinds::SHAPES, Vec::new()) } else { Context::Words(vec!["on", "in"]) };
@@ -339,7 +338,7 @@ fn entry(section: Section, statement: &[Token]) -> Context {
     }
 }
 
-/// What a load acts on.
+/// The target of a load.
 fn load(statement: &[Token], last: &str) -> Context {
     let names = |kinds| Context::Expression { kinds, functions: false, words: Vec::new() };
     let word = statement[0].text.as_str();

@@ -1,7 +1,7 @@
-//! The dimension that the rest of the model demands of what stands at a place.
+//! The dimension that the rest of the model requires of an expression.
 //!
-//! The number 0 fits everywhere: it is put in place of what stands there, or is missing, and the checker then
-//! says what it demands of the whole, and what the other parts are.
+//! The number 0 has every dimension. It replaces the expression, which may also be missing; the checker then
+//! reports the required dimension of the whole and the dimensions of its other parts.
 
 use hodograph_model::check;
 use hodograph_model::dimension::{Dimension, Exponent};
@@ -16,17 +16,17 @@ use hodograph_model::syntax::visit::{Root, roots};
 use crate::Document;
 use crate::context;
 
-/// What is demanded of an expression.
+/// The requirements on an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Expected {
-    /// its dimension, if that is known
+    /// its dimension, if known
     pub dimension: Option<Dimension>,
-    /// whether it is a vector, if that is known
+    /// whether it is a vector, if known
     pub is_vector: Option<bool>,
 }
 
 impl Document {
-    /// What is demanded of the name at a place.
+    /// The requirements on the name at a place.
     pub(crate) fn expected_at(&self, place: Span) -> Option<Expected> {
         let tokens = self.tokens();
         let at = tokens.iter().position(|token| token.span == place)?;
@@ -35,15 +35,15 @@ impl Document {
         demanded(&tokens, place)
     }
 
-    /// What is demanded of what is to be written behind the first so many tokens, in place of a word that
-    /// begins there already.
+    /// The requirements on the text after the first `count` tokens, in place of a word that has been begun
+    /// there.
     pub(crate) fn expected_behind(&self, count: usize, word: Option<Span>, offset: u32) -> Option<Expected> {
         let tokens = self.tokens();
         let place = word.unwrap_or(Span { start: offset, end: offset });
         let rest = &tokens[(count + usize::from(word.is_some())).min(tokens.len())..];
         let mut with_hole = tokens[..count].to_vec();
         with_hole.push(zero(place));
-        // what stands in the next line is another statement, unless a sign joins it
+        // the next line is another statement, unless an operator joins it
         let joins = |next: &Token| matches!(next.kind, TokenKind::Sign(_) | TokenKind::Close(_));
         if rest.first().is_none_or(|next| !joins(next)) {
             let kind = TokenKind::Sign(context::separator(&tokens[..count]));
@@ -62,7 +62,7 @@ fn zero(span: Span) -> Token {
     Token { kind: TokenKind::Number, text: "0".to_owned(), span }
 }
 
-/// What is demanded of the number at a place.
+/// The requirements on the number at a place.
 fn demanded(tokens: &[Token], place: Span) -> Option<Expected> {
     let (tree, symbols) = check::names(&repair::balanced(tokens));
     let holds = |expr: &Expr| expr.span.start <= place.start && place.end <= expr.span.end;
@@ -77,7 +77,7 @@ fn demanded(tokens: &[Token], place: Span) -> Option<Expected> {
     })
 }
 
-/// What is demanded of the number at a place within an expression, of which this is demanded.
+/// The requirements on the number at a place inside an expression with these requirements.
 fn within(expr: &Expr, given: Expected, place: Span, symbols: &Symbols) -> Option<Expected> {
     let mut given = given;
     for wanted in symbols.wanted.iter().filter(|wanted| wanted.place == expr.span) {

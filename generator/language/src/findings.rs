@@ -1,25 +1,27 @@
-//! All that `check` says, at the same places.
+//! The mistakes and warnings of `check`, with their places.
 
 use hodograph_model::diagnostics::{Code, Severity, codes};
 use hodograph_model::span::Span;
 
-use crate::Document;
+use crate::{Document, Place};
 
 /// A mistake or a warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// where
+    /// its place in the document; for a place in an imported file that of the use or import
     pub span: Span,
-    /// its kind, as `E012`
+    /// its own place
+    pub place: Place,
+    /// its code, such as `E012`
     pub code: &'static str,
-    /// an error; else a warning
+    /// whether it is an error, else a warning
     pub is_error: bool,
-    /// something that can be left out
+    /// whether it concerns something that can be left out
     pub is_unused: bool,
     /// what is wrong and what to do
     pub message: String,
     /// other places that explain it
-    pub related: Vec<(Span, String)>,
+    pub related: Vec<(Place, String)>,
 }
 
 const UNUSED: [Code; 3] = [codes::UNUSED_PARAMETER, codes::UNUSED_INPUT, codes::UNUSED_DEFINITION];
@@ -34,13 +36,17 @@ impl Document {
                 message.push('\n');
                 message.push_str(more);
             }
+            let place = self.place(found.primary.span);
+            let here = (place, "the mistake itself".to_owned());
+            let related = found.related.iter().map(|label| (self.place(label.span), label.text.clone()));
             Finding {
-                span: found.primary.span,
+                span: self.source.in_itself(found.primary.span),
+                place,
                 code: found.code.0,
                 is_error: found.severity == Severity::Error,
                 is_unused: UNUSED.contains(&found.code),
                 message,
-                related: found.related.iter().map(|label| (label.span, label.text.clone())).collect(),
+                related: Some(here).filter(|_| place.file > 0).into_iter().chain(related).collect(),
             }
         };
         self.analysis.diagnostics.iter().map(finding).collect()

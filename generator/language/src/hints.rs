@@ -1,4 +1,4 @@
-//! Dimensions beside names and equations that do not state them.
+//! Dimensions for names and equations that do not state them.
 
 use hodograph_model::dimension::Dimension;
 use hodograph_model::span::Span;
@@ -8,14 +8,14 @@ use crate::Document;
 /// A dimension that the text does not state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hint {
-    /// behind what it stands
+    /// the place after which it is shown
     pub offset: u32,
-    /// the dimension, as `: N*m`
+    /// the dimension, such as `: N*m`
     pub label: String,
 }
 
 impl Document {
-    /// The dimensions of definitions without unit, and of the equations, that begin within a place.
+    /// The dimensions of definitions without unit, and of equations, that begin inside a range.
     pub fn hints(&self, within: Span) -> Vec<Hint> {
         let (tree, symbols) = (self.tree(), self.symbols());
         let mut out = Vec::new();

@@ -1,29 +1,35 @@
-//! What is known of the word at a place.
+//! Describes the word at a place.
 
 use hodograph_model::dimension::Dimension;
 use hodograph_model::model::mechanism::{Mechanism, Place, PointId, Variable};
 use hodograph_model::model::names::Symbol;
-use hodograph_model::model::symbols::Declared;
+use hodograph_model::model::symbols::{Declared, Value};
 use hodograph_model::span::Span;
-use hodograph_model::syntax::token::TokenKind;
+use hodograph_model::syntax::token::{Token, TokenKind};
 use hodograph_model::syntax::tree::Section;
 use hodograph_model::syntax::units;
 use hodograph_model::words::{self, Word};
 
 use crate::Document;
 
-/// What is known of a word.
+/// The description of a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hover {
     /// the word
     pub span: Span,
-    /// as Markdown
+    /// the text as Markdown
     pub text: String,
 }
 
 impl Document {
-    /// What is known of the word at a place.
+    /// The description of the word at a place.
     pub fn hover(&self, offset: u32) -> Option<Hover> {
+        let joins = |token: &&Token| matches!(token.kind, TokenKind::Sign('+' | '-' | '*' | '/' | '^'));
+        let next = self.tokens().partition_point(|token| token.span.start < offset);
+        let sign = self.tokens().get(next).filter(|token| token.span.start == offset).filter(joins);
+        if let Some(hover) = sign.and_then(|sign| self.hover_of_operation(sign.span)) {
+            return Some(hover);
+        }
         if let Some((declared, span)) = self.symbols().at(offset) {
             return Some(Hover { span, text: self.describe(declared) });
         }
@@ -40,6 +46,31 @@ impl Document {
             format!("```hodograph\n{}\n```\n{}", word.form, word.meaning)
         };
         Some(Hover { span: token.span, text })
+    }
+
+    /// What the operation at a sign gives, and of what: why the unit of a whole is as it is.
+    fn hover_of_operation(&self, sign: Span) -> Option<Hover> {
+        let values = &self.symbols().values;
+        let holds = |outer: Span, inner: Span| outer.start <= inner.start && inner.end <= outer.end;
+        let whole = values.iter().filter(|value| holds(value.place, sign));
+        let whole = whole.min_by_key(|value| value.place.range().len())?;
+        let told = |value: &Value| {
+            let what = if value.is_vector { "a vector, " } else { "" };
+            format!("`{}`: {what}{}", self.text.at(value.place), in_words(value.dimension))
+        };
+        let mut lines = vec![told(whole)];
+        let within =
+            values.iter().filter(|value| value.place != whole.place && holds(whole.place, value.place));
+        let mut end = 0;
+        // the greater come before those within
+        for value in within {
+            if value.place.start >= end {
+                end = value.place.end;
+                lines.push(format!("- {}", told(value)));
+            }
+        }
+        lines.dedup();
+        Some(Hover { span: whole.place, text: lines.join("\n") })
     }
 
     /// The word of the language at a token.
@@ -105,7 +136,7 @@ impl Document {
         self.statement_at(place)
     }
 
-    /// The statement that begins with, or holds, the name at a place.
+    /// The statement that contains the name at a place.
     pub(crate) fn statement_at(&self, place: Span) -> String {
         let tokens = self.tokens();
         let Some(at) = tokens.iter().position(|token| token.span == place) else { return String::new() };
@@ -157,7 +188,7 @@ impl Document {
     }
 }
 
-/// The point from which another is placed.
+/// The point relative to which another is defined.
 fn origin(m: &Mechanism, point: usize) -> Option<PointId> {
     match &m.points.get(point)?.place {
         Place::Offset { from, .. } | Place::Material { from, .. } => Some(*from),
@@ -170,7 +201,7 @@ fn has_dimension(symbol: Symbol) -> bool {
     matches!(symbol, Parameter(_) | Input(_) | Coordinate(_) | Speed(_) | Definition(_) | Time | Pi)
 }
 
-/// A dimension for readers.
+/// A dimension in words.
 pub(crate) fn in_words(dimension: Option<Dimension>) -> String {
     match dimension {
         None => "its dimension is not known".to_owned(),
@@ -179,7 +210,7 @@ pub(crate) fn in_words(dimension: Option<Dimension>) -> String {
     }
 }
 
-/// The value as declared and in SI.
+/// The value in the declared unit and in SI units.
 fn value(m: &Mechanism, symbol: Symbol) -> Option<String> {
     let (list, i) = match symbol {
         Symbol::Parameter(i) => (&m.parameters, i),
@@ -202,7 +233,7 @@ fn value(m: &Mechanism, symbol: Symbol) -> Option<String> {
     Some(format!("{what} {}{unit}{si}", number(value)))
 }
 
-/// A number with the digits that matter to a reader.
+/// A number rounded for display.
 fn number(value: f64) -> String {
     let short = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
     let size = short.abs();

@@ -1,4 +1,4 @@
-//! The one style of `fmt`, as small changes: an editor keeps its cursor and its marks.
+//! The layout of `fmt` as small changes, so that an editor keeps its cursor and its marks.
 
 use hodograph_model::format;
 use hodograph_model::source::Source;
@@ -8,7 +8,7 @@ use crate::Document;
 use crate::text::Edit;
 
 impl Document {
-    /// What must change for the style of `fmt`; nothing where the text cannot be parsed.
+    /// The changes that `fmt` would make; `None` if the text cannot be parsed.
     pub fn layout(&self) -> Option<Vec<Edit>> {
         let source = Source::file("", self.text.as_str());
         let formatted = format::format(&source).ok()?;
@@ -16,7 +16,8 @@ impl Document {
     }
 }
 
-/// The blanks that differ. All else is the same in both; if it is not, the whole is one change.
+/// The changes of blanks. All other text is the same in both; if it is not, the result is one change of the
+/// whole.
 fn changes(before: &str, after: &str) -> Vec<Edit> {
     if before == after {
         return Vec::new();
@@ -34,7 +35,7 @@ fn changes(before: &str, after: &str) -> Vec<Edit> {
         }
         (a, b) = (&a[gap_a..], &b[gap_b..]);
         let word = |text: &str| text.find(char::is_whitespace).unwrap_or(text.len());
-        // where a blank appears or vanishes, the shorter word ends
+        // where a blank is inserted or removed, the shorter word ends
         let same = word(a).min(word(b));
         if a.get(..same) != b.get(..same) {
             return vec![Edit { span: whole(before), text: after.to_owned() }];

@@ -1,5 +1,6 @@
-//! What an editor asks of a model, as functions of its text: no files, no threads, no protocol. The language
-//! server and a page in a browser use the same functions; both say in their own way what these answer.
+//! The services of an editor for a model, as functions of its text, without files, threads and protocol. The
+//! language server and a page in a browser use the same functions, and each presents the results in its own
+//! way.
 //!
 //! ```
 //! use hodograph_language::Document;
@@ -17,16 +18,20 @@ pub mod colours;
 pub mod completion;
 mod context;
 pub mod document;
+mod entries;
 mod expected;
 pub mod findings;
 pub mod fixes;
+mod fixes_with_parts;
 pub mod hints;
 pub mod hover;
 pub mod layout;
 pub mod navigate;
+mod new_name;
 pub mod outline;
+pub mod rename_with_parts;
 mod statements;
 pub mod text;
 
-pub use document::Document;
+pub use document::{Document, Place};
 pub use hodograph_model::span::Span;

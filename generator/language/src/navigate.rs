@@ -1,24 +1,56 @@
-//! From a name to its declaration and its uses, and to another name.
+//! From a name to its declaration and its uses, and renaming.
 
 use hodograph_model::check;
 use hodograph_model::diagnostics::{Diagnostic, codes};
-use hodograph_model::model::names::{self, Symbol};
-use hodograph_model::source::Source;
+use hodograph_model::model::names::Symbol;
+use hodograph_model::parts::Imported;
+use hodograph_model::source::{MAX_TOKENS, Source};
 use hodograph_model::span::Span;
 use hodograph_model::syntax::lexer;
-use hodograph_model::syntax::token::TokenKind;
-use hodograph_model::syntax::tree::{Name, Section};
+use hodograph_model::syntax::token::{Token, TokenKind};
+use hodograph_model::syntax::tree::Section;
 
-use crate::Document;
+use crate::new_name::valid_name;
+use crate::rename_with_parts::{self, Known};
 use crate::text::{Edit, apply};
+use crate::{Document, Place};
 
 impl Document {
-    /// Where the name that stands here is declared; nothing for what is given.
-    pub fn definition(&self, offset: u32) -> Option<Span> {
-        self.symbols().at(offset)?.0.place
+    /// The place of the declaration of the name or part at a place; for an import, the beginning of the file.
+    /// `None` for a predefined name.
+    pub fn definition(&self, offset: u32) -> Option<Place> {
+        if let Some((declared, _)) = self.symbols().at(offset) {
+            let own = declared.place.map(|span| Place { file: 0, span });
+            let imported = || self.analysis.imported.get(&declared.symbol);
+            return own.or_else(|| imported().map(|at| Place { file: at.file as usize, span: at.span }));
+        }
+        let (i, token) = self.token_at(offset)?;
+        match self.tokens()[..i].last()? {
+            before if before.is_word("use") => self.part(&token.text),
+            before if before.is_word("import") => {
+                let path = token.text.trim_matches('"');
+                let read = self.files.read(None, path).ok()?;
+                let files = &self.source.expansion()?.files;
+                let file = files.iter().position(|file| file.key == read.key)? + 1;
+                Some(Place { file, span: Span::default() })
+            }
+            _ => None,
+        }
     }
 
-    /// The places of the name that stands here, in order.
+    /// The place of the declaration of a part, in the document or in an imported file.
+    fn part(&self, name: &str) -> Option<Place> {
+        let declared = |file: usize, tokens: &[Token]| {
+            let found = tokens.windows(2).find(|pair| pair[0].is_word("part") && pair[1].is_word(name))?;
+            Some(Place { file, span: found[1].span })
+        };
+        let files = self.source.expansion().map_or(&[][..], |expansion| &expansion.files);
+        let imported =
+            |(i, file): (usize, &Imported)| declared(i + 1, &lexer::tokens(&file.text, MAX_TOKENS));
+        declared(0, self.tokens()).or_else(|| files.iter().enumerate().find_map(imported))
+    }
+
+    /// The places of the name at a place, in order.
     pub fn references(&self, offset: u32, with_declaration: bool) -> Vec<Span> {
         let Some((declared, _)) = self.symbols().at(offset) else { return Vec::new() };
         let mut places: Vec<Span> = self.symbols().uses_of(declared.symbol).collect();
@@ -28,16 +60,14 @@ impl Document {
         places
     }
 
-    /// The name that stands here and can be changed, and its place.
+    /// The name at a place that can be changed, and its place.
     ///
     /// # Errors
     ///
-    /// Why it cannot.
+    /// The reason why it cannot be changed.
     pub fn renameable(&self, offset: u32) -> Result<(String, Span), String> {
         if self.has_parts() {
-            return Err(
-                "names of models with parts are not changed here: one name of a part is many".to_owned()
-            );
+            return self.renameable_with_parts(offset);
         }
         let nothing = || "no name of the model stands here".to_owned();
         let (declared, span) = self.symbols().at(offset).ok_or_else(nothing)?;
@@ -62,28 +92,38 @@ impl Document {
         Ok((declared.name.clone(), span))
     }
 
-    /// The changes that give the name that stands here another spelling.
+    /// The changes that rename the name at a place, in this text alone; [`rename_with_parts::rename`] changes
+    /// names that stand in several texts.
     ///
     /// # Errors
     ///
-    /// Why that cannot be: the name is taken or is none, or the model would mean something else.
+    /// The reason why this is impossible: the name is taken or invalid, or the model would change its
+    /// meaning.
     pub fn rename(&self, offset: u32, new: &str) -> Result<Vec<Edit>, String> {
         let (old, _) = self.renameable(offset)?;
         if new == old {
             return Ok(Vec::new());
+        }
+        if self.has_parts() {
+            let changes = rename_with_parts::rename(Known { key: "", document: self }, offset, new, &[])?;
+            return match changes.as_slice() {
+                [change] if change.key.is_empty() => Ok(change.edits.clone()),
+                _ => Err(format!("`{old}` stands in imported files too")),
+            };
         }
         self.can_be_named(new)?;
         let places = self.references(offset, true);
         self.left_over(&old, &places)?;
         let edits: Vec<Edit> = places.iter().map(|span| Edit { span: *span, text: new.to_owned() }).collect();
         let Err(why) = self.same_after(&edits, new, places.len()) else { return Ok(edits) };
-        // `q1` and `u1` belong together by their names: said in an equation, they still do
+        // `q1` and `u1` belong together by their names; an equation can state this instead
         let Some((equations, count)) = self.rates_by_name(&old, new) else { return Err(why) };
         let edits: Vec<Edit> = edits.into_iter().chain([equations]).collect();
         self.same_after(&edits, new, places.len() + count).map(|()| edits)
     }
 
-    /// Whether the changed text has the same mistakes and uses as this one, so many of them of the new name.
+    /// Whether the changed text has the same mistakes and uses as this one, with this number of uses of the
+    /// new name.
     fn same_after(&self, edits: &[Edit], new: &str, places: usize) -> Result<(), String> {
         let after = check::analyse(&Source::file("", apply(self.text.as_str(), edits)));
         let kinds = |all: &[Diagnostic]| {
@@ -102,8 +142,8 @@ impl Document {
         })
     }
 
-    /// The equations `d(q..)/dt = u..` that hold by the names of coordinates and speeds, and in which the name
-    /// enters; with the new name, and how often it stands in them.
+    /// The equations `d(q..)/dt = u..` that hold because of the names of coordinates and speeds, and that
+    /// contain the name; with the new name, and the number of its occurrences.
     fn rates_by_name(&self, old: &str, new: &str) -> Option<(Edit, usize)> {
         let mechanism = self.analysis.mechanism.as_ref()?;
         let mut stated = Vec::new();
@@ -125,17 +165,8 @@ impl Document {
 
     /// Whether a name may be declared in this model.
     fn can_be_named(&self, new: &str) -> Result<(), String> {
-        let tokens = lexer::tokens(new, 4);
-        let name = match tokens.as_slice() {
-            [token] if token.kind == TokenKind::Name && token.span.range() == (0..new.len()) => {
-                Name { text: token.text.clone(), span: token.span }
-            }
-            _ => return Err(format!("`{new}` is no name: names are made of letters, digits and `_`")),
-        };
-        if let Some(reserved) = names::reserved(&name) {
-            return Err(reserved.message);
-        }
-        if let Some(taken) = self.symbols().named(&name.text) {
+        valid_name(new)?;
+        if let Some(taken) = self.symbols().named(new) {
             return Err(format!(
                 "`{new}` is {} of this model already",
                 taken.symbol.kind().trim_start_matches("the ")
@@ -144,7 +175,7 @@ impl Document {
         Ok(())
     }
 
-    /// Where parts of a mistaken model were not read, a name may stand that was not found.
+    /// Checks that the name does not occur in parts of a mistaken model that were not read.
     fn left_over(&self, name: &str, places: &[Span]) -> Result<(), String> {
         let unread = [codes::CYCLE, codes::TOO_DEEP, codes::EXPECTED, codes::FIELD, codes::SECTION_UNKNOWN];
         if !self.analysis.diagnostics.iter().any(|found| unread.contains(&found.code)) {
@@ -169,7 +200,7 @@ impl Document {
         }
     }
 
-    /// Whether a place belongs to a unit.
+    /// Whether a place is in a unit.
     pub(crate) fn is_unit(&self, place: Span) -> bool {
         self.units().iter().any(|unit| unit.start <= place.start && place.end <= unit.end)
     }

@@ -1,4 +1,4 @@
-//! The sections with their entries, and what can be folded.
+//! The sections with their entries, and foldable ranges.
 
 use hodograph_model::model::names::Symbol;
 use hodograph_model::span::Span;
@@ -13,31 +13,31 @@ use crate::statements::{partner, span, statements};
 pub struct Item {
     /// its name, or its first words
     pub name: String,
-    /// what it is, in a few words; may be empty
+    /// a short description; may be empty
     pub detail: String,
-    /// what it stands for; nothing for sections and for what has no name
+    /// the declared symbol; `None` for sections and unnamed entries
     pub symbol: Option<Symbol>,
-    /// all of it
+    /// the place of the whole entry
     pub span: Span,
-    /// its name
+    /// the place of its name
     pub place: Span,
-    /// what it consists of
+    /// its entries
     pub items: Vec<Item>,
 }
 
-/// Lines that can be folded.
+/// A range of lines that can be folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fold {
     /// first line, from 0
     pub first: u32,
     /// last line
     pub last: u32,
-    /// lines of comments
+    /// whether the lines are comments
     pub is_comment: bool,
 }
 
-/// Names of entries are at most this long, in characters.
-const LONGEST: usize = 60;
+/// The greatest length of the name of an entry, in characters.
+const MAX_NAME: usize = 60;
 
 impl Document {
     /// The sections with their entries.
@@ -76,7 +76,7 @@ impl Document {
         });
         let short = |text: &str| {
             let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-            match line.char_indices().nth(LONGEST) {
+            match line.char_indices().nth(MAX_NAME) {
                 Some((end, _)) => format!("{}..", &line[..end]),
                 None => line,
             }
@@ -101,7 +101,7 @@ impl Document {
         }
     }
 
-    /// What can be folded: braces and comments of several lines.
+    /// The foldable ranges: braces and comments with several lines.
     pub fn folds(&self) -> Vec<Fold> {
         let mut out = Vec::new();
         let mut open = Vec::new();
@@ -110,7 +110,7 @@ impl Document {
                 TokenKind::Open(_) => open.push(token.span.start),
                 TokenKind::Close(_) => {
                     let first = open.pop().map(|start| self.text.line_of(start));
-                    // the brace that closes stays to be seen
+                    // the line of the closing brace stays visible
                     let last = self.text.line_of(token.span.start).saturating_sub(1);
                     out.extend(first.filter(|first| *first < last).map(|first| Fold {
                         first,

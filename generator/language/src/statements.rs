@@ -1,10 +1,10 @@
-//! The text as nested braces and statements, by its tokens alone: what editors need of unfinished texts, and of
-//! sections whose entries have no names.
+//! Braces and statements of a text, found from its tokens alone: for incomplete texts, and for sections whose
+//! entries have no names.
 
 use hodograph_model::span::Span;
 use hodograph_model::syntax::token::{Token, TokenKind};
 
-/// The brace that closes the one at this index; the last token where none does.
+/// The closing brace of the one at this index; the last token if there is none.
 pub fn partner(tokens: &[Token], open: usize) -> usize {
     let mut depth = 0_usize;
     for (i, token) in tokens.iter().enumerate().skip(open) {
@@ -20,8 +20,8 @@ pub fn partner(tokens: &[Token], open: usize) -> usize {
     tokens.len().saturating_sub(1)
 }
 
-/// The statements between two indices: from one separator at the level of the braces to the next, without
-/// documentation and without the separator.
+/// The statements between two indices: each ends at a separator on the level of the braces. Documentation and
+/// separators are left out.
 pub fn statements(tokens: &[Token], from: usize, to: usize) -> Vec<std::ops::Range<usize>> {
     let (mut out, mut depth, mut start) = (Vec::new(), 0_usize, from);
     for (i, token) in tokens.iter().enumerate().take(to).skip(from) {
@@ -44,7 +44,7 @@ pub fn statements(tokens: &[Token], from: usize, to: usize) -> Vec<std::ops::Ran
     trimmed.filter(|range| !range.is_empty()).collect()
 }
 
-/// The place of some tokens.
+/// The place of a range of tokens.
 pub fn span(tokens: &[Token], range: std::ops::Range<usize>) -> Span {
     let (Some(first), Some(last)) = (tokens.get(range.start), tokens.get(range.end - 1)) else {
         return Span::default();

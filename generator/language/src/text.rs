@@ -2,7 +2,7 @@
 
 use hodograph_model::span::Span;
 
-/// In what an editor counts the characters of a line.
+/// The unit in which an editor counts the characters of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Encoding {
     /// bytes of UTF-8
@@ -26,13 +26,13 @@ pub struct Position {
 /// A change of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edit {
-    /// what is replaced
+    /// the place of the replaced text
     pub span: Span,
-    /// by what
+    /// the new text
     pub text: String,
 }
 
-/// A text that knows where its lines begin. Lines end with a line feed, a carriage return, or both.
+/// A text with the places of its lines. Lines end with a line feed, a carriage return, or both.
 #[derive(Clone, Debug)]
 pub struct Text {
     text: String,
@@ -57,12 +57,12 @@ impl Text {
         &self.text
     }
 
-    /// What stands at a place; nothing where that is none.
+    /// The text at a place; empty if the place is not in the text.
     pub fn at(&self, span: Span) -> &str {
         self.text.get(span.range()).unwrap_or_default()
     }
 
-    /// How many lines it has.
+    /// The number of lines.
     pub fn lines(&self) -> u32 {
         self.starts.len() as u32
     }
@@ -72,7 +72,7 @@ impl Text {
         (self.starts.partition_point(|start| *start <= offset) - 1) as u32
     }
 
-    /// The place of a line without what ends it.
+    /// The place of a line without its line end.
     pub fn line(&self, line: u32) -> Span {
         let Some(&start) = self.starts.get(line as usize) else {
             let end = self.text.len() as u32;
@@ -83,7 +83,7 @@ impl Text {
         Span { start, end: start + whole.trim_end_matches(['\n', '\r']).len() as u32 }
     }
 
-    /// Where an editor sees a byte. Places within a character count as its beginning.
+    /// The position of a byte. A place inside a character counts as its beginning.
     pub fn position(&self, offset: u32, encoding: Encoding) -> Position {
         let mut offset = (offset as usize).min(self.text.len());
         while !self.text.is_char_boundary(offset) {
@@ -99,8 +99,8 @@ impl Text {
         Position { line, character: character as u32 }
     }
 
-    /// The byte at which an editor sees a position. Beyond the end of a line it is that end, beyond the last
-    /// line the end of the text, and within a character the end of that character.
+    /// The byte of a position. A position after the end of a line is moved to that end, one after the last
+    /// line to the end of the text, and one inside a character to the end of that character.
     pub fn offset(&self, position: Position, encoding: Encoding) -> u32 {
         let line = self.line(position.line);
         let mut units = 0;
@@ -117,7 +117,7 @@ impl Text {
         line.end
     }
 
-    /// The text after a change. A place that is none is moved to the nearest that is one.
+    /// The text after a change. An invalid place is moved to the nearest valid one.
     pub fn edited(&self, edit: &Edit) -> String {
         let bound = |offset: u32| {
             let mut offset = (offset as usize).min(self.text.len());

@@ -4,4 +4,7 @@
 //! runs those of `tests/models.rs`.
 
 mod models;
+mod newcomer;
+mod parts;
+mod renaming;
 mod textmate;

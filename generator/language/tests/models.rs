@@ -176,10 +176,10 @@ fn findings_are_those_of_check() {
             // of what stands in a part, or in another file, the place in this text
             let place = source.in_itself(diagnostic.primary.span);
             assert_eq!((finding.span, finding.code), (place, diagnostic.code.0), "{path}");
-            // places in other files are left out
-            let related =
-                diagnostic.related.iter().filter(|label| std::ptr::eq(source.locate(label.span).0, &source));
-            assert_eq!(finding.related.len(), related.count());
+            // and besides where it stands itself
+            let (file, itself) = source.place(diagnostic.primary.span);
+            assert_eq!((finding.place.file, finding.place.span), (file, itself));
+            assert_eq!(finding.related.len(), diagnostic.related.len());
             let says =
                 |text: &Option<String>| text.as_ref().is_none_or(|text| finding.message.contains(text));
             assert!(finding.message.starts_with(&diagnostic.message) && says(&diagnostic.help));
@@ -391,7 +391,7 @@ fn names_of_a_text_with_open_brackets_are_known() {
     let whole = Document::new(text.as_str());
     assert_eq!(document.symbols().declared.len(), whole.symbols().declared.len());
     let use_of = broken.find("l1/2").unwrap() as u32;
-    assert_eq!(document.definition(use_of).unwrap().start as usize, broken.find("l1: m").unwrap());
+    assert_eq!(document.definition(use_of).unwrap().span.start as usize, broken.find("l1: m").unwrap());
 }
 
 #[test]
@@ -448,9 +448,11 @@ fn models_with_parts_have_their_mistakes_and_names_at_their_places() {
     assert_eq!(document.findings(), []);
     let declared = text.find("q: rad").unwrap();
     let found = document.definition(text.find("q); }").unwrap() as u32).unwrap();
-    assert_eq!(found.start as usize, declared);
+    assert_eq!((found.file, found.span.start as usize), (0, declared));
+    let part = document.definition(text.find("Link as b").unwrap() as u32).unwrap();
+    assert_eq!(&text[part.span.start as usize - 5..][..9], "part Link");
     assert!(document.hover(text.find("tip, mass").unwrap() as u32).unwrap().text.contains("a point"));
-    assert!(document.rename(declared as u32, "angle").unwrap_err().contains("with parts"));
+    assert_eq!(document.rename(declared as u32, "angle").unwrap().len(), 3);
     let mistaken = text.replace("rotate(z, q)", "rotate(z, qq)");
     let found = Document::new(mistaken.as_str()).findings();
     assert_eq!(found[0].code, "E020");

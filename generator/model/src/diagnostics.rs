@@ -38,7 +38,7 @@ pub struct Fix {
 pub enum Place {
     /// in place of what stands here
     Replace(Span),
-    /// at the end of the braces that follow what stands here, as one more field
+    /// at the end of the braces or brackets that follow what stands here, as one more field
     IntoBraces(Span),
 }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostics::{Diagnostic, codes};
-use crate::parts::{self, Expansion, Files, NoFiles};
+use crate::parts::{self, Expansion, Files, Imported, NoFiles};
 use crate::span::{Location, Span};
 use crate::syntax::lexer;
 use crate::syntax::token::{Token, TokenKind};
@@ -70,9 +70,9 @@ impl Source {
         };
         self.parts = expansion.map(|expansion| {
             // an imported file is a text to quote from
-            let source = |(name, text): &(String, String)| Source {
-                name: name.clone(),
-                content: Content::File(text.clone()),
+            let source = |file: &Imported| Source {
+                name: file.name.clone(),
+                content: Content::File(file.text.clone()),
                 parts: None,
             };
             let imported = expansion.files.iter().map(source).collect();
@@ -98,10 +98,21 @@ impl Source {
 
     /// The text in which a place stands, and where in it: the model itself or a file that it imports.
     pub fn locate(&self, span: Span) -> (&Source, Span) {
-        let Some(parts) = &self.parts else { return (self, span) };
-        let Some(place) = parts.expansion.places.find(span) else { return (self, Span::default()) };
-        let file = (place.file as usize).checked_sub(1).and_then(|file| parts.imported.get(file));
-        (file.unwrap_or(self), place.span)
+        let (file, span) = self.place(span);
+        let imported = file.checked_sub(1).and_then(|file| self.imported().nth(file));
+        (imported.unwrap_or(self), span)
+    }
+
+    /// The same, with the number of the text: 0 is the model itself, others count what it imports from 1. What
+    /// is between two words stands behind the first.
+    pub fn place(&self, span: Span) -> (usize, Span) {
+        let Some(parts) = &self.parts else { return (0, span) };
+        let places = &parts.expansion.places;
+        let between = span.range().is_empty() && span.start > 0;
+        let words = if between { Span { start: span.start - 1, ..span } } else { span };
+        let Some(place) = places.find(words) else { return (0, Span::default()) };
+        let span = if between { Span { start: place.span.end, ..place.span } } else { place.span };
+        (place.file as usize, span)
     }
 
     /// Where in the model itself a place belongs to: there, or the use or import through which it came.

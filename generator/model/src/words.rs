@@ -112,7 +112,7 @@ pub const FIELDS: &[Word] = &[
     word("curve", "curve: h*sin(k*x)", "y = h(x) in the plane of x and y"),
     word("mu", "mu: 0.3", "the coefficient of friction"),
     word("e", "e: 0.5", "the coefficient of restitution, from 0 to 1"),
-    word("law", "law: stronge", "the hypothesis of restitution: newton, poisson or stronge"),
+    word("law", "law: stronge", "the hypothesis of restitution: what e means"),
     word("mu_static", "mu_static: 0.4", "the coefficient of static friction"),
     word("mu_impact", "mu_impact: 0.3", "the coefficient of friction in impacts"),
     word("sliding", "sliding: stribeck(0.1)", "friction as a function of the speed of slip"),
@@ -221,6 +221,11 @@ pub const GIVEN: &[Word] = &[
 /// The entry of a table.
 pub fn look<'w>(table: &'w [Word], text: &str) -> Option<&'w Word> {
     table.iter().find(|word| word.text == text)
+}
+
+/// The words of a table, for messages.
+pub fn texts(table: &[Word]) -> String {
+    table.iter().map(|word| word.text).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -12,39 +12,39 @@ use hodograph_model::source::{self, Source};
 ///
 /// # Errors
 ///
-/// There is no such file, it may not be read, it is no file, or it is too large: its kind is
-/// [`ErrorKind::FileTooLarge`] then.
+/// There is no such file, it may not be read, it is not a regular file, or it is too large (then the kind of
+/// the error is [`ErrorKind::FileTooLarge`]).
 pub fn bytes(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let refused = |why: &str| Err(io::Error::new(ErrorKind::InvalidInput, why));
-    let data = std::fs::metadata(path).map_err(plain)?;
+    let data = std::fs::metadata(path).map_err(in_words)?;
     if data.is_dir() {
         return refused("it is a directory");
     }
-    // opening a pipe without a writer would wait, and some devices never end
+    // Opening a pipe without a writer would wait, and reading some devices never ends.
     if !data.is_file() {
         return refused("it is a pipe or a device, not a file");
     }
-    up_to(File::open(path).map_err(plain)?, most)
+    up_to(File::open(path).map_err(in_words)?, most)
 }
 
 /// The text of a file of at most `most` bytes.
 ///
 /// # Errors
 ///
-/// As [`bytes`], and where it is no UTF-8.
+/// Those of [`bytes`]; and the text is not UTF-8.
 pub fn text(path: &Path, most: usize) -> io::Result<String> {
     String::from_utf8(bytes(path, most)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        io::Error::new(ErrorKind::InvalidData, format!("it is no UTF-8 text at byte {at}; save it as UTF-8"))
+        io::Error::new(ErrorKind::InvalidData, format!("it is not UTF-8 text at byte {at}; save it as UTF-8"))
     })
 }
 
-/// A model in a file. What goes wrong is reported when it is checked.
+/// A model in a file. Errors of reading it are reported when the model is checked.
 pub fn model(path: &Path) -> Source {
     model_as(path.display().to_string(), path)
 }
 
-/// As [`model`], with the name that messages give it.
+/// A model in a file under the given name, which messages use.
 pub fn model_as(name: impl Into<String>, path: &Path) -> Source {
     match bytes(path, source::MAX_BYTES) {
         Ok(bytes) => {
@@ -60,17 +60,22 @@ pub fn model_as(name: impl Into<String>, path: &Path) -> Source {
     }
 }
 
-/// Finds what a model imports by paths relative to its file.
+/// Reads the files that a model imports by paths relative to its own file.
 #[derive(Clone, Debug)]
 pub struct Beside {
     /// the file of the model
     pub path: PathBuf,
-    /// what messages call it
+    /// the name of the model in messages
     pub name: String,
 }
 
-impl Files for Beside {
-    fn read(&self, importing: Option<&Imported>, path: &str) -> Result<Imported, String> {
+impl Beside {
+    /// Where a path leads that stands in the model or in a file that it imports, and what messages call that.
+    ///
+    /// # Errors
+    ///
+    /// Why it leads nowhere, as the rest of a sentence about the path.
+    pub fn find(&self, importing: Option<&Imported>, path: &str) -> Result<(PathBuf, String), String> {
         if Path::new(path).has_root() {
             return Err("is no relative path".to_owned());
         }
@@ -78,16 +83,27 @@ impl Files for Beside {
             None => (self.path.as_path(), self.name.as_str()),
             Some(file) => (Path::new(&file.key), file.name.as_str()),
         };
-        let found = from.with_file_name("").join(path);
-        let text = text(&found, source::MAX_BYTES).map_err(|error| format!("cannot be read: {error}"))?;
-        let key = std::fs::canonicalize(&found).unwrap_or(found).to_string_lossy().into_owned();
-        let name = plainly(&Path::new(name).with_file_name("").join(path));
-        Ok(Imported { key, name, text })
+        let name = normalised(&Path::new(name).with_file_name("").join(path));
+        Ok((from.with_file_name("").join(path), name))
     }
 }
 
+impl Files for Beside {
+    fn read(&self, importing: Option<&Imported>, path: &str) -> Result<Imported, String> {
+        let (found, name) = self.find(importing, path)?;
+        let text = text(&found, source::MAX_BYTES).map_err(|error| format!("cannot be read: {error}"))?;
+        Ok(Imported { key: key(&found), name, text })
+    }
+}
+
+/// What a file is known by, however its path is written.
+pub fn key(path: &Path) -> String {
+    let known = std::fs::canonicalize(path);
+    known.unwrap_or_else(|_| PathBuf::from(normalised(path))).to_string_lossy().into_owned()
+}
+
 /// A path without `.` and, where a folder stands before it, without `..`.
-fn plainly(path: &Path) -> String {
+fn normalised(path: &Path) -> String {
     let mut parts: Vec<Component<'_>> = Vec::new();
     for part in path.components() {
         match (part, parts.last()) {
@@ -101,14 +117,14 @@ fn plainly(path: &Path) -> String {
     parts.iter().collect::<PathBuf>().to_string_lossy().into_owned()
 }
 
-/// All that a reader has, if that is at most `most` bytes.
+/// Everything that a reader yields, if that is at most `most` bytes.
 ///
 /// # Errors
 ///
-/// It has more, or reading fails.
+/// The reader yields more, or reading fails.
 pub fn up_to(reader: impl Read, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    reader.take(most as u64 + 1).read_to_end(&mut bytes).map_err(plain)?;
+    reader.take(most as u64 + 1).read_to_end(&mut bytes).map_err(in_words)?;
     if bytes.len() > most {
         let size = if most >= 1 << 20 { format!("{} MiB", most >> 20) } else { format!("{most} bytes") };
         return Err(io::Error::new(ErrorKind::FileTooLarge, format!("it is larger than {size}")));
@@ -116,8 +132,8 @@ pub fn up_to(reader: impl Read, most: usize) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The commonest reasons in words.
-fn plain(error: io::Error) -> io::Error {
+/// An error with the commonest reasons in words.
+fn in_words(error: io::Error) -> io::Error {
     let words = match error.kind() {
         ErrorKind::NotFound => "there is no such file",
         ErrorKind::PermissionDenied => "permission to read it is denied",
@@ -146,7 +162,7 @@ mod tests {
     #[test]
     fn paths_of_imports_are_plain() {
         for (path, expected) in [("a/./b", "a/b"), ("a/../b", "b"), ("../b", "../b"), ("a/b/../../c", "c")] {
-            assert_eq!(plainly(Path::new(path)), expected);
+            assert_eq!(normalised(Path::new(path)), expected);
         }
     }
 

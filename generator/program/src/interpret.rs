@@ -20,10 +20,10 @@ pub use directional::{Directional, Rates};
 use prepared::holds;
 pub use prepared::{Arguments, Constants, Failed, Prepared};
 
-/// The numbers of a quantity.
+/// The values of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
-    /// what it is
+    /// the quantity
     pub quantity: Quantity,
     /// number of rows
     pub rows: usize,
@@ -34,7 +34,7 @@ pub struct Array {
 }
 
 impl Array {
-    /// The number in a row and a column.
+    /// The entry in a row and a column.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.values.get(row * self.columns + column).copied().unwrap_or(f64::NAN)
     }
@@ -45,21 +45,21 @@ impl Array {
     }
 }
 
-/// Why a program has no result at some inputs.
+/// Why a program has no result for some inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
-    /// something vanishes that must not
+    /// a value vanishes that must not
     Singular {
-        /// what that means
+        /// the meaning of this, in words
         message: String,
-        /// the value that counts as zero
+        /// the vanishing value
         value: f64,
-        /// the coordinates on which that value depends, by their numbers
+        /// indices of the coordinates on which this value depends
         coordinates: Vec<u32>,
     },
     /// a result, or a value that must not vanish, is infinite or not a number
     NotFinite,
-    /// the program does not compute this
+    /// the program does not compute this quantity
     Absent(Quantity),
 }
 
@@ -90,7 +90,7 @@ impl<'a> Evaluator<'a> {
         Evaluator { program, stages: program.stages() }
     }
 
-    /// The quantities asked for, in that order.
+    /// The values of the quantities, in the order given.
     pub fn evaluate(&self, inputs: &Inputs, quantities: &[Quantity]) -> Result<Vec<Array>, Failure> {
         if let Some(&absent) = quantities.iter().find(|&&quantity| self.program.output(quantity).is_none()) {
             return Err(Failure::Absent(absent));
@@ -116,8 +116,8 @@ impl<'a> Evaluator<'a> {
         Ok(arrays)
     }
 
-    /// Every value of the slice; of a sine-cosine pair both, else the second is 0. What depends on parameters
-    /// alone is computed in twice the digits and rounded for the rest.
+    /// The value of every operation of the slice; of a sine-cosine pair both, else the second is 0. Values
+    /// that depend on parameters alone are computed in double-double arithmetic and rounded once.
     fn numbers(&self, inputs: &Inputs, slice: &Slice<'_>) -> Vec<(f64, f64)> {
         let (none, nothing) = ((0.0, 0.0), DoubleDouble::new(0.0));
         let mut numbers = vec![none; self.program.operations.len()];

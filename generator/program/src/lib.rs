@@ -1,4 +1,4 @@
-//! A mechanism's equations as a straight-line program.
+//! The equations of a mechanism as a straight-line program.
 //!
 //! ```text
 //! program     straight-line operations: shared, hoisted, factorised

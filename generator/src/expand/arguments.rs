@@ -7,8 +7,8 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Error, LitFloat, LitInt, Result, Token, parenthesized, token};
 
-use hodograph_emit::{LAWS, Requests, Set, Specialised};
-use hodograph_model::suggest::nearest;
+use hodograph_emit::{Requests, Set, Specialised, law_variant};
+use hodograph_model::{suggest::nearest, words};
 
 const SET: &str = "as in `evaluate control(mass_matrix, forcing)`";
 const COLLISION: &str = "as in `specialise strike(tip_wall, law = Stronge, mu = 0.3)`";
@@ -213,13 +213,16 @@ fn given(content: ParseStream, collision: &mut Specialised) -> Result<Ident> {
 }
 
 fn law(content: ParseStream) -> Result<&'static str> {
-    let listed = LAWS.map(|law| format!("`{law}`")).join(", ");
+    let laws: Vec<String> = words::LAWS.iter().map(|law| law_variant(law.text)).collect();
+    let listed = laws.iter().map(|law| format!("`{law}`")).collect::<Vec<_>>().join(", ");
     let law = content
         .call(Ident::parse_any)
         .map_err(|error| Error::new(error.span(), format!("a law of restitution is one of {listed}")))?;
     let name = law.to_string();
-    LAWS.into_iter().find(|known| *known == name).ok_or_else(|| {
-        let help = nearest(&name, LAWS.into_iter()).map(|meant| format!("did you mean `{meant}`?"));
+    let known = laws.iter().position(|law| *law == name).and_then(|place| words::LAWS.get(place));
+    known.map(|law| law.text).ok_or_else(|| {
+        let help =
+            nearest(&name, laws.iter().map(String::as_str)).map(|meant| format!("did you mean `{meant}`?"));
         let help = help.unwrap_or_else(|| format!("there are {listed}"));
         Error::new(law.span(), format!("there is no law of restitution `{name}`; {help}"))
     })
@@ -304,7 +307,7 @@ mod tests {
         assert_eq!((hit.name.to_string(), hit.contact.to_string()), ("hit".into(), "tip".into()));
         assert_eq!((hit.law, hit.mu, hit.e, hit.budget), (None, None, None, None));
         assert_eq!((b.name.to_string(), b.contact.to_string()), ("b".into(), "c_d".into()));
-        assert_eq!((b.law, b.mu, b.e, b.budget), (Some("Newton"), Some(0.25), Some(1.0), Some(8)));
+        assert_eq!((b.law, b.mu, b.e, b.budget), (Some("newton"), Some(0.25), Some(1.0), Some(8)));
     }
 
     #[test]

@@ -7,8 +7,8 @@ use hodograph_model::source::Source;
 use hodograph_program::artifact::{self, Loaded};
 use hodograph_program::program::Program;
 
-/// Finds the program of a model. `path` is where its derivation should be, `shown` how messages call that
-/// file, `command` what writes it.
+/// Finds the program of a model. `path` is the path of its derivation, `shown` the name of that file in
+/// messages, `command` the command that writes it.
 pub fn find(
     source: &Source,
     mechanism: &Mechanism,
@@ -32,7 +32,7 @@ fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) 
     use crate::DerivationError;
 
     #[cfg(unix)]
-    let _elsewhere = lead_stdout_elsewhere();
+    let _elsewhere = redirect_stdout();
     match crate::derive(mechanism) {
         Ok(derived) => Ok(Program::new(&derived)),
         Err(DerivationError::Model(error)) => Err(error.diagnostic().compiler_text(source)),
@@ -44,7 +44,7 @@ fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) 
 /// editor's macro server. Until the guard is dropped, standard output goes to standard error or, where that
 /// is not possible, is discarded.
 #[cfg(all(feature = "derive", unix))]
-fn lead_stdout_elsewhere() -> Box<dyn std::any::Any> {
+fn redirect_stdout() -> Box<dyn std::any::Any> {
     let stderr = std::fs::OpenOptions::new().write(true).open("/dev/stderr").ok();
     match stderr.and_then(|stderr| gag::Redirect::stdout(stderr).ok()) {
         Some(redirect) => Box::new(redirect),
@@ -69,8 +69,8 @@ mod tests {
     const MODEL: &str = "mechanism Drop; parameters { m: kg = 1 } coordinates { q1: m } speeds { u1: m/s } \
                          points { P = O + q1*N.x; } particles { A { point: P, mass: m } }";
 
-    /// What is said of a derivation with this text; `None`: there is no file.
-    fn said(name: &str, text: Option<&str>) -> String {
+    /// The error for a derivation with this text; `None`: there is no file.
+    fn error_for(name: &str, text: Option<&str>) -> String {
         let source = Source::file("models/drop.mech", MODEL);
         let mechanism = check(&source).mechanism.expect("the model is sound");
         let path = std::env::temp_dir().join(format!("hodograph-{}-{name}.derivation", std::process::id()));
@@ -86,14 +86,14 @@ mod tests {
     #[test]
     fn a_fresh_derivation_is_taken() {
         let hash = artifact::model_hash(&Source::file("models/drop.mech", MODEL));
-        assert_eq!(said("fresh", Some(&artifact::encode(&Program::default(), &hash))), "");
+        assert_eq!(error_for("fresh", Some(&artifact::encode(&Program::default(), &hash))), "");
     }
 
     #[test]
     fn the_command_that_repairs_is_named() {
-        let stale = said("stale", Some(&artifact::encode(&Program::default(), "00")));
+        let stale = error_for("stale", Some(&artifact::encode(&Program::default(), "00")));
         assert!(stale.contains("`models/drop.derivation` is stale"), "{stale}");
-        let damaged = said("damaged", Some("<<<<<<< ours\n"));
+        let damaged = error_for("damaged", Some("<<<<<<< ours\n"));
         assert!(damaged.contains("is damaged"), "{damaged}");
         for message in [stale, damaged] {
             assert!(message.contains("\n\n    hodograph derive models/drop.mech\n"), "{message}");
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     #[cfg(not(feature = "derive"))]
     fn an_absent_derivation_names_the_command_and_the_feature() {
-        let absent = said("absent", None);
+        let absent = error_for("absent", None);
         assert!(
             absent.contains("hodograph derive models/drop.mech") && absent.contains("feature `derive`"),
             "{absent}"

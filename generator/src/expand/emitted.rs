@@ -1,4 +1,5 @@
-//! Emits the module of a mechanism with what its arguments ask for, or tells what is wrong with these.
+//! Emits the module of a mechanism with the methods that the arguments of the macro request, or the mistakes
+//! in these arguments.
 
 use proc_macro2::{Span, TokenStream};
 
@@ -8,8 +9,8 @@ use hodograph_emit::{self as emit, Options};
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_program::program::Program;
 
-/// The module of a mechanism whose program `found` finds, or the errors: those about arguments where they stand,
-/// others at `at`.
+/// The module of a mechanism whose program `found` finds, or the errors: those about arguments at their
+/// places, others at `at`.
 pub fn emitted(
     mechanism: &Mechanism,
     arguments: &Arguments,

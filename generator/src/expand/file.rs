@@ -20,13 +20,13 @@ use hodograph_model::suggest::nearest;
 use hodograph_model::syntax::token::TokenKind;
 use hodograph_program::files;
 
-/// The path that the user wrote, and where.
+/// The path in the macro, and its place.
 pub struct ModelPath {
     text: String,
     span: Span,
 }
 
-/// A string, perhaps with a comma. Who writes more is told which arguments there are.
+/// A string, perhaps with a comma. More than that is an error, which lists the arguments.
 impl Parse for ModelPath {
     fn parse(input: ParseStream) -> Result<Self> {
         let path = input.parse::<LitStr>()?;

@@ -18,10 +18,10 @@ use hodograph_program::files::Beside;
 
 /// The module of an inline model.
 pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, package: &Path) -> TokenStream {
-    // The tokens are the user's; the call itself stands in the wrapper of the runtime.
+    // The tokens are the user's; the call itself is in the wrapper of the runtime.
     let first = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
     let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
-    // paths of imports are relative to Cargo.toml, as that of a model file is
+    // imports are relative to Cargo.toml, like the path of a model file
     let imports = Beside { path: package.join("Cargo.toml"), name: "Cargo.toml".to_owned() };
     let model = Inline::new("mechanism!", model).importing(&imports);
     let source = &model.source;
@@ -30,7 +30,7 @@ pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, pa
     let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let failed = |error: &TokenStream, tracked: &[TokenStream]| match &name {
         Some(name) => emit::stub(&module, name, error, tracked, &arguments.types()),
-        // what has no name nobody refers to
+        // a module without a name is never used
         None => error.clone(),
     };
     let Some(mechanism) = checked.mechanism else {
@@ -54,7 +54,7 @@ fn in_package(path: &str) -> TokenStream {
     quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #path))
 }
 
-/// The name after `mechanism`, which follows the documentation, and where it stands.
+/// The name after `mechanism`, which follows the documentation, and its place.
 fn name(model: &TokenStream) -> Option<(String, Span)> {
     let trees: Vec<TokenTree> = model.clone().into_iter().collect();
     let is = |tree: &TokenTree, word: &str| matches!(tree, TokenTree::Ident(ident) if ident == word);

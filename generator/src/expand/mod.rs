@@ -21,9 +21,9 @@ use hodograph_model::syntax::tree::Section;
 pub use arguments::Arguments;
 pub use tokens::Inline;
 
-/// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is
-/// `($crate) "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime
-/// is `::hodograph`. `package` is the folder of the invoking package's `Cargo.toml`.
+/// The expansion of `mechanism!`: a module, or errors and a stand-in for it. The input is `($crate)
+/// "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime is
+/// `::hodograph`. `package` is the folder of the invoking package's `Cargo.toml`.
 pub fn expand(input: TokenStream, package: &Path) -> TokenStream {
     let expand = std::panic::AssertUnwindSafe(|| module(input, package));
     std::panic::catch_unwind(expand).unwrap_or_else(|_| {
@@ -64,7 +64,7 @@ fn module(input: TokenStream, package: &Path) -> TokenStream {
 const TAKES: &str = "`mechanism!` takes the path of a model file in quotes, as in `mechanism!(\"models/hopper.mech\")`, or a model, as in \
                      `mechanism! { mechanism Hopper; .. }`";
 
-/// Whether it looks like a model, perhaps without its beginning.
+/// Whether the input looks like a model, perhaps without its beginning.
 fn is_model(trees: &[TokenTree]) -> bool {
     trees.windows(2).any(|pair| match pair {
         [TokenTree::Ident(word), next] => {

@@ -17,12 +17,12 @@ use super::compiler;
 pub struct Inline {
     /// its tokens
     pub source: Source,
-    /// where each stands in the user's source
+    /// their places in the user's source
     places: Vec<RustSpan>,
 }
 
 impl Inline {
-    /// The model of these tokens. `name` is what messages call it.
+    /// The model of these tokens. `name` is its name in messages.
     pub fn new(name: impl Into<String>, stream: TokenStream) -> Inline {
         let mut reader = Reader::default();
         reader.read(stream);
@@ -35,8 +35,8 @@ impl Inline {
         Inline { source: self.source.importing(files), places: self.places }
     }
 
-    /// The user's tokens at a place: the first and the last. What stands in an imported file is where it is used
-    /// or imported.
+    /// The user's tokens at a place: the first and the last. A place in an imported file is represented by
+    /// the tokens that use or import it.
     pub fn rust_spans(&self, span: Span) -> Option<(RustSpan, RustSpan)> {
         let span = self.source.in_itself(span);
         let first = self.places.get(span.start as usize).or(self.places.last())?;
@@ -58,7 +58,7 @@ impl Reader {
         self.places.push(place);
     }
 
-    /// Groups are kept on a stack of our own, for a stream nests as deep as its author likes.
+    /// Groups are kept on an explicit stack, since streams may be nested arbitrarily deep.
     fn read(&mut self, stream: TokenStream) {
         let mut open = vec![(stream.into_iter().collect::<Vec<_>>().into_iter().peekable(), None)];
         while let Some((trees, closing)) = open.last_mut() {
@@ -143,7 +143,7 @@ fn documentation(group: &proc_macro2::Group) -> Option<String> {
     let equals = matches!(trees.next()?, TokenTree::Punct(sign) if sign.as_char() == '=');
     match trees.next()? {
         TokenTree::Literal(literal) if named && equals => unquote(&literal.to_string()),
-        // the words reach us within an invisible group where another macro passed them on
+        // inside an invisible group if another macro passed the text on
         TokenTree::Group(group) if named && equals && group.delimiter() == Delimiter::None => {
             unquote(&group.stream().to_string())
         }

@@ -5,7 +5,7 @@ pub mod inlined;
 
 /// Functions of doubles, to about a unit in the last place.
 pub mod double {
-    pub use libm::{acos, asin, atan, atan2, exp, expm1 as exp_m1, log as ln, log1p as ln_1p, tan};
+    pub use libm::{acos, asin, atan, atan2, exp, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, tan};
 }
 
 /// Functions of singles, to about a unit in the last place. Those that are not used in routines may compute

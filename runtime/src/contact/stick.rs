@@ -77,8 +77,10 @@ fn wedged<T: Real>(mu: T, hold: &Vector2<T>, pull: &Vector2<T>) -> T {
     if !outside(least) {
         return least;
     }
-    let disc = b * b + a * c;
-    if disc <= constant::<T>(16.0) * T::default_epsilon() * (b * b + (a * c).abs()) {
+    // b^2 + a c = mu^2 c - (hold x pull)^2; the terms of the left side cancel where there is little friction.
+    let (held, across) = (mu * mu * c, hold.perp(pull) * hold.perp(pull));
+    let disc = held - across;
+    if disc <= constant::<T>(16.0) * T::default_epsilon() * (held + across) {
         // Friction suffices for no force or for one only: the force for which least is missing.
         return if a < zero { larger(zero, b / a) } else { least };
     }

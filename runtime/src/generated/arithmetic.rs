@@ -34,6 +34,12 @@ pub fn neg_mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
     if FUSED { (-a).mul_add(b, c) } else { c - a * b }
 }
 
+/// The square root of x^2 + y^2, without overflow or underflow of the squares. Not by the system's library: it may
+/// differ from machine to machine, and a program that calls it needs a recent one.
+pub fn hypot(x: f64, y: f64) -> f64 {
+    double::hypot(x, y)
+}
+
 /// 1 / a
 #[inline(always)]
 pub fn recip<T: Scalar>(a: T) -> T {

@@ -5,7 +5,8 @@ use nalgebra::{Vector2, Vector3};
 
 use super::number;
 use crate::{
-    ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar, impact_without_collision, solve,
+    CollisionOutcome, ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar, impact_without_collision,
+    solve,
     specialised::{KnownLaw, solve_inlined},
     structure::{General, Structure, solve_structured},
 };
@@ -51,6 +52,23 @@ pub struct Resolved<T: nalgebra::Scalar> {
     pub impulse_on_point: Vector3<T>,
     /// change of kinetic energy, J: (24)
     pub energy_change: T,
+}
+
+impl<T: Scalar> Resolved<T> {
+    /// What is told of the collision of a contact with this normal.
+    #[inline(always)]
+    pub fn outcome(self, normal: Vector3<T>) -> CollisionOutcome<T> {
+        CollisionOutcome {
+            normal,
+            tangent: self.tangent,
+            binormal: self.binormal,
+            approach: self.approach,
+            reduced: self.reduced,
+            impulse_on_point: self.impulse_on_point,
+            energy_change: self.energy_change,
+            impact: self.impact,
+        }
+    }
 }
 
 /// Cosine and sine of the angle from `first` to t. t lies along the slip of approach; without slip it is the

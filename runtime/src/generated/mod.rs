@@ -8,6 +8,7 @@ mod closed;
 #[doc(hidden)]
 pub mod construction;
 mod contact;
+mod feature;
 mod log;
 mod records;
 mod saltation;
@@ -30,12 +31,14 @@ pub use contact::{
     resolve_structured_inlined, resolve_without_collision,
 };
 #[doc(hidden)]
+pub use feature::Feature;
+#[doc(hidden)]
 pub use saltation::{by_coordinate, by_coordinates, reset, salted, state};
 #[doc(hidden)]
 pub use slices::{Description, normalise_quaternions, write_array, write_rows};
 
 #[doc(hidden)]
-pub use crate::specialised::{AnyLaw, KnownLaw, Newton, Poisson, Stronge, solve_inlined};
+pub use crate::specialised::{AnyLaw, KnownLaw, OneLaw, solve_inlined};
 
 #[cfg(feature = "defmt")]
 #[doc(hidden)]

@@ -57,6 +57,23 @@ pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
     pub impact: Impact<T>,
 }
 
+/// How far what touches at a contact is apart, and how far the place is within it: what [`Contacts::gap`] and
+/// [`Contacts::validity`] give.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance<T = f64> {
+    /// the gap, m; `None` where the model gives none
+    pub gap: Option<T>,
+    /// how far the place is within the faces and edges that touch there, m; `None` where these do not end
+    pub validity: Option<T>,
+}
+
+impl<T> Default for Distance<T> {
+    /// That of a contact whose model gives neither.
+    fn default() -> Self {
+        Distance { gap: None, validity: None }
+    }
+}
+
 /// Room for what forces of closed contacts follow from: what [`Contacts::closed_contacts`] gives of k contacts of a
 /// mechanism with `n` coordinates and `p` independent speeds.
 #[derive(Debug)]
@@ -101,7 +118,7 @@ pub struct RelativeRotation<'a, T = f64> {
     /// rates of its components without contact forces (3), rad/s^2, as [`Contacts::free_acceleration`]
     pub free_acceleration: &'a mut [T],
     /// its partial velocities (3 x `p`): a torque tau on what strikes, whose opposite acts on what is struck, has the
-    /// generalized forces given by their transpose times tau
+    /// generalised forces given by their transpose times tau
     pub partial_velocities: &'a mut [T],
     /// change of the independent speeds per unit of angular impulse (`p` x 3), and of their rates per unit of torque
     pub response: &'a mut [T],
@@ -128,6 +145,25 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         let _ = (contact, state);
         Ok(None)
     }
+    /// Gaps and validities of several contacts in one pass: what several of the single methods need (kinematics, the
+    /// directions of faces) is computed once.
+    ///
+    /// # Errors
+    ///
+    /// As those of the single methods, for any of these contacts.
+    fn gaps(
+        &self,
+        contacts: &[usize],
+        state: &State<'_, T>,
+        distances: &mut [Distance<T>],
+    ) -> Result<(), StateError> {
+        check_length(distances, contacts.len(), "the distances")?;
+        for (&contact, distance) in contacts.iter().zip(distances) {
+            let (gap, validity) = (self.gap(contact, state)?, self.validity(contact, state)?);
+            *distance = Distance { gap, validity };
+        }
+        Ok(())
+    }
     /// Friction and restitution that the model states for a contact; `None` where it states none. A simulation
     /// takes it where its options say nothing else.
     fn surface(&self, contact: usize) -> Option<Surface<T>> {
@@ -142,6 +178,23 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     }
     /// Velocity of the striking point relative to what it strikes, along the contact basis, m/s.
     fn contact_velocity(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
+    /// Velocities of several contacts in one pass, as those of [`Contacts::contact_velocity`].
+    ///
+    /// # Errors
+    ///
+    /// As those of [`Contacts::contact_velocity`], for any of these contacts.
+    fn contact_velocities(
+        &self,
+        contacts: &[usize],
+        state: &State<'_, T>,
+        velocities: &mut [Vector3<T>],
+    ) -> Result<(), StateError> {
+        check_length(velocities, contacts.len(), "the velocities")?;
+        for (&contact, velocity) in contacts.iter().zip(velocities) {
+            *velocity = self.contact_velocity(contact, state)?;
+        }
+        Ok(())
+    }
     /// beta: rates of the three components of the contact velocity without contact forces, m/s^2. It is the
     /// derivative of these components, as functions of (t, q, u), along (1, q', u'), so that the turning of
     /// the contact basis counts. Named inputs are held: where a velocity depends on an input, the input's own

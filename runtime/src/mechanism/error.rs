@@ -47,7 +47,7 @@ impl StateError {
             Self::Singular { .. } => Cause::SingularState,
             Self::NotFinite => Cause::NotFinite,
             Self::Length { .. } => Cause::WrongLength,
-            Self::Missing { .. } => Cause::Missing,
+            Self::Missing { .. } => Cause::UnknownName,
             Self::Undefined { .. } => Cause::Undefined,
         }
     }
@@ -65,7 +65,7 @@ impl fmt::Display for StateError {
             Self::NotFinite => {
                 write!(
                     out,
-                    "a result is infinite or not a number: check the state and the parameters for overflow"
+                    "a number of the state, or a result, is infinite or not a number: it must be finite; check the state and the parameters for overflow"
                 )
             }
             Self::Length { what, expected, found } => {
@@ -137,7 +137,9 @@ impl ParameterError {
 impl fmt::Display for ParameterError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite { name } => write!(out, "`{name}` is infinite or not a number"),
+            Self::NotFinite { name } => {
+                write!(out, "`{name}` is infinite or not a number: it must be finite")
+            }
             Self::Mass { body } => write!(out, "the mass of `{body}` is not positive"),
             Self::Inertia { body } => write!(
                 out,

@@ -1,6 +1,7 @@
 //! The differential equations of a collision, (31)-(35), (45) and (46), in units where m_nn = 1 and v_n1 =
 //! -1, for the paper's methods.
 
+use hodograph_arithmetic::elementary::double::hypot;
 use nalgebra::{Vector2, Vector3};
 
 use super::MethodError;
@@ -41,11 +42,11 @@ pub(super) struct Problem {
     phi: f64,
 }
 
-/// The length of a vector; by the library where a square may overflow or lose digits.
+/// The length of a vector; scaled where a square may overflow or lose digits.
 #[inline]
 pub(super) fn length(x: f64, y: f64) -> f64 {
     let length = (x * x + y * y).sqrt();
-    if length > 1e-140 && length < 1e150 { length } else { x.hypot(y) }
+    if length > 1e-140 && length < 1e150 { length } else { hypot(x, y) }
 }
 
 impl Problem {

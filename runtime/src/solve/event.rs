@@ -7,11 +7,9 @@
 use super::{
     restitution::{Restitution, State},
     sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc, rough_ln},
+    target::Watched,
 };
-use crate::{
-    Law,
-    scalar::{Real, constant, dot, fma, larger, smaller},
-};
+use crate::scalar::{Real, constant, dot, fma, larger, smaller};
 
 /// An event: v_n, I_n or the normal work since compression ended reaches a target.
 #[derive(Clone, Copy)]
@@ -25,10 +23,10 @@ impl<T: Real> Event<T> {
     /// The event that ends restitution under the law, once compression has ended.
     #[inline(always)]
     pub fn end(restitution: &Restitution<T>) -> Self {
-        match restitution.law() {
-            Law::Newton => Self::Velocity(restitution.target),
-            Law::Poisson => Self::Impulse(restitution.target),
-            Law::Stronge => Self::Work(restitution.wanted),
+        match restitution.law().watched() {
+            Watched::Velocity => Self::Velocity(restitution.target),
+            Watched::Impulse => Self::Impulse(restitution.target),
+            Watched::Work => Self::Work(restitution.wanted),
         }
     }
 

@@ -9,8 +9,9 @@ use super::{
     gauss16::Panel,
     restitution::Restitution,
     sliding_arc::{ArcPoint, Rates, SlidingArc},
+    target::Watched,
 };
-use crate::{Law, scalar::Real, scalar::constant, scalar::larger, scalar::smaller};
+use crate::{scalar::Real, scalar::constant, scalar::larger, scalar::smaller};
 
 /// The greatest number of trials for one event; two or three are usual.
 const TRIALS: u32 = 96;
@@ -45,7 +46,6 @@ impl<T: Real> EventLocation<'_, T> {
             limit = smaller(limit, length);
         }
         let v = self.from.state.velocity;
-        let law = restitution.law();
         self.fast = self.fast || restitution.delicate();
         let target = restitution.target;
         if let Some(stop) = restitution.stop() {
@@ -57,13 +57,13 @@ impl<T: Real> EventLocation<'_, T> {
         if T::INLINED {
             return self.rising(limit, restitution, to);
         }
-        // Newton's target does not depend on where compression ends.
-        if v >= zero || (law == Law::Newton && target > zero && !restitution.thorough()) {
+        // A target that is known before does not depend on where compression ends.
+        if v >= zero || (restitution.skips_compression() && !restitution.thorough()) {
             let ended = self.find(&Event::end(restitution), T::one(), limit, to).is_some();
             if v < zero && (ended || to.state.velocity >= zero) {
                 restitution.compressed_somewhere();
             }
-            if ended && law == Law::Newton {
+            if ended && restitution.watches(Watched::Velocity) {
                 // The law states v_n itself: rounding of the place may exceed a small target.
                 to.state.velocity = target;
             }
@@ -86,14 +86,14 @@ impl<T: Real> EventLocation<'_, T> {
     fn rising(&mut self, limit: T, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
         let zero = T::zero();
         let v = self.from.state.velocity;
-        let ends = v >= zero || (restitution.law() == Law::Newton && restitution.target > zero);
+        let ends = v >= zero || restitution.skips_compression();
         let event = if ends { Event::end(restitution) } else { Event::Velocity(zero) };
         let found = self.find_here::<true>(&event, T::one(), limit, to).is_some();
         if ends {
             if v < zero && (found || to.state.velocity >= zero) {
                 restitution.compressed_somewhere();
             }
-            if found && restitution.law() == Law::Newton {
+            if found && restitution.watches(Watched::Velocity) {
                 // As in `follow`.
                 to.state.velocity = restitution.target;
             }
@@ -127,7 +127,7 @@ impl<T: Real> EventLocation<'_, T> {
             limit = length;
         }
         let end = Event::end(restitution);
-        if restitution.law() == Law::Newton || end.at(to) < zero {
+        if restitution.watches(Watched::Velocity) || end.at(to) < zero {
             *to = last;
             return false;
         }

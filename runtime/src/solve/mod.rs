@@ -23,6 +23,7 @@ mod sliding_arc;
 mod snapshots;
 mod stop_series;
 mod straight;
+mod target;
 mod taylor;
 mod terminal;
 mod verification;
@@ -38,6 +39,7 @@ pub(crate) use self::{
     restitution::{LinearArc, Restitution, State},
     snapshots::Units,
     straight::{Slide, Slides, straight},
+    target::Watched,
     terminal::Terminal,
     without_collision::without_collision,
 };

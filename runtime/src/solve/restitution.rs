@@ -1,11 +1,15 @@
-//! The laws of restitution: the target at which each ends the collision, set where compression ends, and
-//! straight arcs up to it in closed form. Units: m_nn = 1 and v_n1 = -1.
+//! The progress of a collision under a law of restitution: its compressions, the target that ends it
+//! (`target` says what each law asks for), and straight arcs up to it in closed form. Units: m_nn = 1 and v_n1 = -1.
 //!
 //! Theory: docs/theory.md, section 9.
 
 use nalgebra::Vector2;
 
-use super::{contact::Contact, grazing::Grazing};
+use super::{
+    contact::Contact,
+    grazing::Grazing,
+    target::{Compression, Watched},
+};
 use crate::{Law, scalar::Real, scalar::constant, scalar::larger};
 
 /// Slip over |v_n1| (times mu if mu > 1) above which the balance of energy would lose digits of the work.
@@ -53,12 +57,12 @@ pub(crate) struct Restitution<T: Real> {
     start: T,
     /// Whether the work is always integrated directly.
     direct: bool,
-    /// The value of v_n (Newton), I_n (Poisson) or the normal work (Stronge) at which restitution ends.
+    /// The value of the watched quantity at which restitution ends.
     pub target: T,
-    least_work: T,
+    pub(super) least_work: T,
     /// Normal work at the end of the latest compression.
     ended: T,
-    /// Normal work from there to the end of restitution (Stronge). As the difference of `target` and `ended`
+    /// Normal work from there to the end of restitution, where work is watched. As the difference of `target` and `ended`
     /// it would lose digits.
     pub wanted: T,
     /// The normal work since the end of the latest compression, as integrated, less its value as the
@@ -100,7 +104,7 @@ impl<T: Real> Restitution<T> {
             thorough: false,
             stop: None,
             quadratures: u32::MAX,
-            grazing: Grazing::new(if law == Law::Newton { e } else { T::zero() }),
+            grazing: Grazing::new(if law.is_known_before() { e } else { T::zero() }),
         }
     }
 
@@ -110,7 +114,7 @@ impl<T: Real> Restitution<T> {
     pub fn without_collision(law: Law, e: T) -> Self {
         let eps = T::default_epsilon();
         // Newton's hypothesis gives v_n2 = -e v_n1 = 0, as for e = 0.
-        let e = if law == Law::Newton { T::zero() } else { e };
+        let e = if law.is_known_before() { T::zero() } else { e };
         let start = -(eps * eps * eps * eps);
         Self { start, grazing: Grazing::falling(), ..Self::new(law, e) }
     }
@@ -133,7 +137,7 @@ impl<T: Real> Restitution<T> {
     pub fn in_units(&self, normal: T, tangential: T, direct: bool) -> Self {
         Self {
             direct,
-            target: if self.law() == Law::Newton { self.target } else { self.target * normal },
+            target: if self.watches(Watched::Velocity) { self.target } else { self.target * normal },
             least_work: self.least_work * normal,
             ended: self.ended * normal,
             wanted: self.wanted * normal,
@@ -182,13 +186,12 @@ impl<T: Real> Restitution<T> {
         if work < self.least_work {
             self.least_work = work;
         }
-        match self.law() {
-            Law::Newton => {}
-            Law::Poisson => self.target = (T::one() + self.e) * normal,
-            Law::Stronge => {
-                let square = self.e * self.e;
-                self.target = (T::one() - square) * self.least_work;
-                self.wanted = (self.least_work - work) - square * self.least_work;
+        if !self.law().is_known_before() {
+            let compression = Compression { normal, work, least_work: self.least_work };
+            let target = self.law().target(self.e, &compression);
+            self.target = target.value;
+            if let Some(wanted) = target.work {
+                self.wanted = wanted;
                 (self.ended, self.lost) = (work, T::zero());
             }
         }
@@ -199,7 +202,7 @@ impl<T: Real> Restitution<T> {
     /// difference of the total works.
     #[inline]
     pub fn since(&mut self, at: &State<T>, since: T) {
-        if self.law() == Law::Stronge && self.compressions > 0 {
+        if self.watches(Watched::Work) && self.compressions > 0 {
             self.lost = since - (at.work - self.ended);
         }
     }
@@ -207,26 +210,26 @@ impl<T: Real> Restitution<T> {
     /// Whether restitution needs so little work that the balance of energy would lose its digits.
     #[inline]
     pub fn delicate(&self) -> bool {
-        self.law() == Law::Stronge
+        self.watches(Watched::Work)
             && self.compressions > 0
             && self.wanted < -constant::<T>(0.05) * self.least_work
     }
 
-    /// The normal work that restitution still needs (Stronge).
+    /// The normal work that restitution still needs, where work is watched.
     #[inline]
     fn missing(&self, work: T) -> T {
         larger(self.wanted - ((work - self.ended) + self.lost), T::zero())
     }
 
-    /// Records that v_n falls through zero at this state, and how near the target of Poisson's or Stronge's
-    /// law is: on one side of the target the collision has ended before, on the other another compression
+    /// Records that v_n falls through zero at this state, and how near the target of an impulse or of a work
+    /// is: on one side of the target the collision has ended before, on the other another compression
     /// follows.
     #[inline]
     pub fn falls(&mut self, at: &State<T>) {
-        let size = match self.law() {
-            Law::Newton => return,
-            Law::Poisson => self.target,
-            Law::Stronge => self.least_work,
+        let size = match self.law().watched() {
+            Watched::Velocity => return,
+            Watched::Impulse => self.target,
+            Watched::Work => self.least_work,
         };
         self.grazing.missed((self.target - self.watched(at)).abs() / size.abs());
     }
@@ -237,6 +240,18 @@ impl<T: Real> Restitution<T> {
             Some(law) => law,
             None => self.law,
         }
+    }
+
+    /// Whether the law watches this quantity.
+    #[inline(always)]
+    pub fn watches(&self, quantity: Watched) -> bool {
+        self.law().watched() == quantity
+    }
+
+    /// Whether the target is known although compression has not ended, and is not where compression ends.
+    #[inline(always)]
+    pub fn skips_compression(&self) -> bool {
+        self.law().is_known_before() && self.target > T::zero()
     }
 
     /// The normal impulse at which the arc ends without a law, if there is one: never in a routine that is
@@ -270,22 +285,21 @@ impl<T: Real> Restitution<T> {
     /// How far the law's quantity is from its target at this state, and the scale of this quantity.
     #[inline]
     pub fn missed(&self, end: &State<T>) -> (T, T) {
-        let scale = match self.law() {
-            Law::Newton => T::one(),
-            Law::Poisson => end.normal,
-            Law::Stronge => -self.least_work,
+        let scale = match self.law().watched() {
+            Watched::Velocity => T::one(),
+            Watched::Impulse => end.normal,
+            Watched::Work => -self.least_work,
         };
         ((self.watched(end) - self.target).abs(), scale)
     }
 
-    /// The quantity whose target ends the collision: v_n (Newton), I_n (Poisson) or the normal work
-    /// (Stronge).
+    /// The quantity whose target ends the collision.
     #[inline]
     pub fn watched(&self, state: &State<T>) -> T {
-        match self.law() {
-            Law::Newton => state.velocity,
-            Law::Poisson => state.normal,
-            Law::Stronge => state.work,
+        match self.law().watched() {
+            Watched::Velocity => state.velocity,
+            Watched::Impulse => state.normal,
+            Watched::Work => state.work,
         }
     }
 
@@ -302,7 +316,7 @@ impl<T: Real> Restitution<T> {
             if to.velocity < noise {
                 return true;
             }
-            if self.law() == Law::Newton && self.target > to.velocity && !self.thorough() {
+            if self.law().is_known_before() && self.target > to.velocity && !self.thorough() {
                 self.compressed_somewhere();
                 return true;
             }
@@ -374,18 +388,18 @@ impl<T: Real> Restitution<T> {
                 return LinearArc::Ended { impulse, velocity, work };
             }
         }
-        let (more, end) = match self.law() {
-            Law::Newton => {
+        let (more, end) = match self.law().watched() {
+            Watched::Velocity => {
                 if rate <= T::zero() {
                     return LinearArc::on(length);
                 }
                 (larger((self.target - velocity) / rate, T::zero()), self.target)
             }
-            Law::Poisson => {
+            Watched::Impulse => {
                 let more = larger(self.target - from.normal - impulse, T::zero());
                 (more, velocity + rate * more)
             }
-            Law::Stronge => {
+            Watched::Work => {
                 let missing = self.missing(work);
                 let square = velocity * velocity + (missing + missing) * rate;
                 if square < T::zero() || (square <= T::zero() && missing > T::zero()) {

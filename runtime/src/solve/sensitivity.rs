@@ -8,9 +8,10 @@ use nalgebra::Vector2;
 use super::{
     contact::Contact,
     restitution::{Restitution, State},
+    target::Watched,
 };
 use crate::{
-    Law, Sensitivity,
+    Sensitivity,
     scalar::{Real, constant, length},
 };
 
@@ -92,7 +93,7 @@ impl Sensitivity {
         restitution.grazing.moved(end.velocity);
         self.grazing = restitution.grazing.nearest <= near;
         if let Some(velocity) = slides
-            && (restitution.law() == Law::Newton || end.velocity <= near)
+            && (restitution.watches(Watched::Velocity) || end.velocity <= near)
         {
             let slip = length(velocity);
             // f < 0: the bodies are about to approach again.

@@ -13,6 +13,7 @@ use nalgebra::Vector2;
 use super::{
     contact::Contact,
     restitution::{Restitution, State},
+    target::Watched,
 };
 use crate::{
     ImpactError, Violation,
@@ -92,7 +93,8 @@ impl<T: Real> Restitution<T> {
             && end.velocity >= -share * speed
             && dot(i.x, i.x, i.y, i.y) <= most * most * (T::one() + share)
             && work <= share * energy
-            && self.is_ended(end, share);
+            && self.is_ended(end, share)
+            && self.work_is_known(c, end);
         if sound { Ok(()) } else { self.violation(c, from, slip, end, velocity) }
     }
 
@@ -180,7 +182,29 @@ impl<T: Real> Restitution<T> {
             return broken(Violation::Energy, work / energy);
         }
         let (missed, scale) = self.missed(end);
-        if within(missed, scale) { Ok(()) } else { broken(Violation::Restitution, missed / scale) }
+        if !within(missed, scale) {
+            return broken(Violation::Restitution, missed / scale);
+        }
+        if self.work_is_known(c, end) {
+            Ok(())
+        } else {
+            broken(Violation::Restitution, self.rounded_work(c, end) / scale)
+        }
+    }
+
+    /// Whether Stronge's law determines the end of the collision: it requires work, the integral of v_n, and the
+    /// rounding errors of v_n must have done less than all of it.
+    #[inline(always)]
+    fn work_is_known(&self, c: &Contact<T>, end: &State<T>) -> bool {
+        !self.watches(Watched::Work) || self.rounded_work(c, end) <= -self.least_work
+    }
+
+    /// The work that rounding errors of v_n may have done: v_n is known to some roundings of the terms (9.2).
+    #[inline(always)]
+    fn rounded_work(&self, c: &Contact<T>, end: &State<T>) -> T {
+        let i = &end.tangential;
+        let terms = end.normal + (c.b.x * i.x).abs() + (c.b.y * i.y).abs();
+        constant::<T>(ROUNDINGS) * T::default_epsilon() * terms * end.normal
     }
 }
 

@@ -12,30 +12,14 @@ pub trait KnownLaw: Copy + core::fmt::Debug + PartialEq + Send + Sync + 'static 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnyLaw;
 
-/// [`Law::Newton`].
+/// The law of this number ([`Law::number`]). A number without a law does not compile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Newton;
-
-/// [`Law::Poisson`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Poisson;
-
-/// [`Law::Stronge`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stronge;
+pub struct OneLaw<const NUMBER: u8>;
 
 impl KnownLaw for AnyLaw {
     const LAW: Option<Law> = None;
 }
 
-impl KnownLaw for Newton {
-    const LAW: Option<Law> = Some(Law::Newton);
-}
-
-impl KnownLaw for Poisson {
-    const LAW: Option<Law> = Some(Law::Poisson);
-}
-
-impl KnownLaw for Stronge {
-    const LAW: Option<Law> = Some(Law::Stronge);
+impl<const NUMBER: u8> KnownLaw for OneLaw<NUMBER> {
+    const LAW: Option<Law> = Some(Law::ALL[NUMBER as usize]);
 }

@@ -10,7 +10,7 @@ mod number;
 
 use nalgebra::Vector3;
 
-pub use self::known_law::{AnyLaw, KnownLaw, Newton, Poisson, Stronge};
+pub use self::known_law::{AnyLaw, KnownLaw, OneLaw};
 use self::number::Inlined;
 use crate::{
     ContactSurface, Impact, ImpactError, Phases, ReducedMatrix, Scalar, Snapshot, Surface,

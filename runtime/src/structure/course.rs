@@ -6,9 +6,8 @@
 use nalgebra::Vector2;
 
 use crate::{
-    Law,
     scalar::{Real, constant, length},
-    solve::{Event, Restitution, Slide, State},
+    solve::{Event, Restitution, Slide, State, Watched},
 };
 
 /// How often the step is doubled, on an arc without end, until it reaches the end of the collision.
@@ -144,10 +143,10 @@ fn piece<T: Real>(
     to: (T, State<T>, T),
 ) -> Piece<T> {
     let zero = T::zero();
-    let law = restitution.law();
     let (mut from, mut to) = (from, to);
-    // Stronge's target is a work since compression ended, which may be below the rounding of the total work.
-    let works = law == Law::Stronge && restitution.compressions > 0 && restitution.stop().is_none();
+    // A work since compression ended may be below the rounding of the total work.
+    let works =
+        restitution.watches(Watched::Work) && restitution.compressions > 0 && restitution.stop().is_none();
     let passes = if works && from.1.state.velocity >= zero {
         to.1.velocity >= zero && to.2 < restitution.wanted
     } else {
@@ -160,8 +159,8 @@ fn piece<T: Real>(
     let mut compresses = false;
     let by_law = restitution.stop().is_none();
     if by_law && from.1.state.velocity < zero {
-        // Newton's target does not depend on where compression ends.
-        compresses = law != Law::Newton || restitution.target <= zero || restitution.thorough();
+        // A target that is known before does not depend on where compression ends.
+        compresses = !restitution.skips_compression() || restitution.thorough();
         if !compresses {
             restitution.compressed_somewhere();
         }
@@ -178,7 +177,10 @@ fn piece<T: Real>(
                 let target = restitution.target;
                 let reached =
                     if works { to.2 >= restitution.wanted } else { restitution.watched(&to.1) >= target };
-                if !reached || (law == Law::Newton && restitution.watched(&from.1.state) >= target) {
+                if !reached
+                    || (restitution.watches(Watched::Velocity)
+                        && restitution.watched(&from.1.state) >= target)
+                {
                     return Piece::Passed;
                 }
                 Event::end(restitution)
@@ -186,7 +188,7 @@ fn piece<T: Real>(
         };
         let mut found = find(course, &event, T::one(), &from, to.0);
         if !compresses {
-            if by_law && law == Law::Newton {
+            if by_law && restitution.watches(Watched::Velocity) {
                 // The law states v_n itself: rounding of the place may exceed a small target.
                 found.1.state.velocity = restitution.target;
             }
@@ -198,7 +200,7 @@ fn piece<T: Real>(
             return Piece::Ended(from.1);
         }
         from.1.state.velocity = zero;
-        if law == Law::Stronge && length(&from.1.slip) > zero {
+        if restitution.watches(Watched::Work) && length(&from.1.slip) > zero {
             return Piece::Compressed(from.1);
         }
     }

@@ -7,19 +7,19 @@ use hodograph_model::model::mechanism::{LoadKind, Mechanism};
 #[derive(Clone, Debug, Default)]
 pub struct Energies {
     kinetic: Vec<f64>,
-    /// none where the mechanism has no potential energy that is known
+    /// the potential energy; `None` if that of the mechanism is not defined
     potential: Vec<Option<f64>>,
 }
 
 impl Energies {
-    /// Those of a state.
+    /// Records the energies of a state.
     pub fn add(&mut self, mechanism: &dyn Contacts<f64>, state: &State<'_>) {
         self.kinetic.push(mechanism.kinetic_energy(state).unwrap_or(f64::NAN));
         self.potential.push(mechanism.potential_energy(state).unwrap_or(Some(f64::NAN)));
     }
 
-    /// The curves by name, and what is to be said where one is missing: a potential energy that is not
-    /// defined is not zero, and has no sum with the kinetic energy.
+    /// The curves by name, and a note if one is missing: a potential energy that is not defined is not zero,
+    /// so that there is no sum of energies.
     pub fn curves(self, model: &Mechanism) -> (Vec<(&'static str, Vec<f64>)>, Option<String>) {
         let potential: Option<Vec<f64>> = self.potential.into_iter().collect();
         let kinetic = self.kinetic;
@@ -31,7 +31,7 @@ impl Energies {
     }
 }
 
-/// What is to be said of a model without potential energy: nothing where no load has one.
+/// The note on a model without potential energy; `None` if no load could have one.
 pub fn missing(model: &Mechanism) -> Option<String> {
     let conservative = |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_) | LoadKind::Spring { .. });
     model.loads.iter().any(|load| conservative(&load.kind)).then(|| {

@@ -1,35 +1,35 @@
-//! Follows a motion from sample to sample, with the events between them.
+//! Simulates a motion from sample to sample, with the events between them.
 
 use hodograph_simulation::{Event, EventKind, Progress, Simulation, SimulationError};
 
-/// Speeds below count as none, in their units.
+/// Speeds below this, in their units, count as zero.
 const STILL: f64 = 1e-9;
-/// All is at rest where this many samples show no speed.
-const RESTS: u32 = 10;
+/// The mechanism is at rest if all speeds are zero in this number of consecutive samples.
+const SAMPLES_AT_REST: u32 = 10;
 
-/// Which stretch of time is followed.
+/// The time span of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// where it begins, s
+    /// initial time, s
     pub start: f64,
-    /// where it ends, s
+    /// final time, s
     pub until: f64,
-    /// from sample to sample, s
+    /// time between samples, s
     pub step: f64,
-    /// whether it ends earlier where all is at rest
+    /// whether the motion ends as soon as the mechanism is at rest
     pub at_rest: bool,
 }
 
-/// Who is told of samples and events, and may end the motion by an error of their own.
+/// An observer of samples and events; an error of it ends the motion.
 pub trait Watch<E> {
-    /// The simulation is at the time of a sample.
+    /// Called at the time of a sample.
     ///
     /// # Errors
     ///
     /// Ends the motion.
     fn sample(&mut self, simulation: &Simulation<'_>) -> Result<(), E>;
 
-    /// An event happened, and the simulation is where it did.
+    /// Called after an event, at its time.
     ///
     /// # Errors
     ///
@@ -37,12 +37,12 @@ pub trait Watch<E> {
     fn event(&mut self, event: &Event, simulation: &Simulation<'_>) -> Result<(), E>;
 }
 
-/// Follows a motion that stands at its start, of which there is no sample: samples at `start + k step`, at
-/// the end, and where the motion ends by itself.
+/// Simulates a motion from its start, of which no sample is taken: samples at `start + k step`, at the final
+/// time, and where the motion ends by itself.
 ///
 /// # Errors
 ///
-/// Those of the simulation, and of who watches.
+/// Those of the simulation, and those of the observer.
 pub fn follow<E: From<SimulationError>>(
     simulation: &mut Simulation<'_>,
     span: &Span,
@@ -54,14 +54,14 @@ pub fn follow<E: From<SimulationError>>(
         while let Progress::Event(event) = simulation.advance(end)? {
             watch.event(&event, simulation)?;
             if matches!(event.kind, EventKind::Singular) {
-                // The motion has an end of its own.
+                // The motion ends by itself.
                 return watch.sample(simulation);
             }
         }
         watch.sample(simulation)?;
         let is_still = simulation.speeds().iter().all(|speed| speed.abs() <= STILL);
         still = if is_still { still + 1 } else { 0 };
-        if end >= span.until || span.at_rest && still >= RESTS {
+        if end >= span.until || span.at_rest && still >= SAMPLES_AT_REST {
             break;
         }
     }

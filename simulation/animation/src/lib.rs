@@ -7,6 +7,8 @@
 mod energies;
 mod follow;
 mod gap;
+#[cfg(feature = "mcap")]
+pub mod mcap_file;
 mod number;
 mod recording;
 mod rigid;
@@ -29,50 +31,51 @@ pub use segments::segments;
 pub use setup::{Setup, Value};
 pub use shapes::{Outline, Place, Shape};
 
-const STYLE: &str = include_str!("../page/style.css");
-/// The drawing of a motion, which the playground has too: its `build` joins the same files.
+/// The style sheet of pages with curves, beyond that of all pages.
+pub const STYLE: &str = include_str!("../page/style.css");
+/// The script that draws a motion; the playground's `build` uses the same files.
 const SCRIPT: &str = concat!(
     include_str!("../page/geometry.js"),
     include_str!("../page/body.js"),
     include_str!("../page/motion.js"),
 );
-/// Where a written page has its motion.
+/// The place of the motion in a written page.
 const BODY: &str = "<div id=\"motion\"></div>\n<noscript><p>This page needs JavaScript, which stands in the page itself.</p></noscript>\n";
-/// Shows it.
+/// Shows the motion there.
 const SHOW: &str = "showMotion(document.getElementById(\"motion\"), JSON.parse(document.getElementById(\"data\").textContent));";
-/// A page holds this many instants at most, about; of more, every second or third .. is kept, and those of
-/// events.
+/// A page contains about this many moments at most; of longer motions every second or third moment is kept,
+/// and those of events.
 const MOMENTS: usize = 6000;
 
-/// What is to be seen. Lengths are in metres along N.x, N.y, N.z.
+/// An animation. Lengths are in metres along N.x, N.y, N.z.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Animation {
     /// in plain words
     pub title: String,
-    /// the moments, s; they do not decrease, and an event has one before and one after it
+    /// the moments, s, not decreasing; each event has one before and one after it
     pub times: Vec<f64>,
-    /// the moments just before events, by their places in `times`, rising
+    /// indices in `times` of the moments just before events, increasing
     #[serde(skip)]
     pub before: Vec<usize>,
     /// the points of the mechanism
     pub points: Vec<Point>,
-    /// the frames to be shown, if any
+    /// the frames to be drawn, if any
     pub frames: Vec<Frame>,
-    /// lines between points, by their places in `points`
+    /// lines between points, by their indices in `points`
     pub segments: Vec<[usize; 2]>,
     /// shapes of bodies, and grounds
     pub shapes: Vec<Shape>,
-    /// in the order of time
+    /// the events in order of time
     pub events: Vec<Happening>,
-    /// forces that last
+    /// contact forces and other forces over time
     pub forces: Vec<Force>,
-    /// curves below the picture; those with the same panel share axes
+    /// curves below the animation; those with the same panel share axes
     pub series: Vec<Series>,
     /// the direction upwards, such as that against gravity
     pub up: [f64; 3],
-    /// what else is to be said, in sentences
+    /// further notes, in sentences
     pub notes: Vec<String>,
-    /// of what this is the motion
+    /// the simulated model, its parameters and surfaces
     #[serde(skip)]
     pub setup: Setup,
 }
@@ -80,11 +83,11 @@ pub struct Animation {
 /// A point.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
-    /// as in the model
+    /// name in the model
     pub name: String,
-    /// where it is at each moment
+    /// its position at each moment
     pub places: Vec<[f64; 3]>,
-    /// the place where a shape touches: drawn small, without name and path
+    /// a contact point of a shape: drawn small, without name and path
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub quiet: bool,
 }
@@ -92,9 +95,9 @@ pub struct Point {
 /// A frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct Frame {
-    /// as in the model
+    /// name in the model
     pub name: String,
-    /// the point at which it is drawn, by its place in `points`
+    /// index in `points` of the point at which it is drawn
     pub at: usize,
     /// its axes x, y, z at each moment
     pub axes: Vec<[[f64; 3]; 3]>,
@@ -103,13 +106,13 @@ pub struct Frame {
 /// An event at one instant.
 #[derive(Clone, Debug, Serialize)]
 pub struct Happening {
-    /// s
+    /// time, s
     pub time: f64,
-    /// the contact at which it happens; may be empty
+    /// the contact; may be empty
     pub contact: String,
-    /// what happens, such as `collision`
+    /// kind of the event, such as `collision`
     pub label: String,
-    /// where
+    /// its place
     pub at: Option<[f64; 3]>,
     /// its impulse, N s
     pub impulse: Option<[f64; 3]>,
@@ -118,33 +121,33 @@ pub struct Happening {
 /// A force over time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Force {
-    /// such as the name of its contact
+    /// its name, such as that of its contact
     pub name: String,
-    /// where it acts at each moment
+    /// its point of action at each moment
     pub at: Vec<[f64; 3]>,
-    /// N at each moment, `None` where it does not act
+    /// the force at each moment, N; `None` if there is none
     pub force: Vec<Option<[f64; 3]>>,
 }
 
 /// A curve over time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Series {
-    /// what stands over its panel, such as `energy`
+    /// the title of its panel, such as `energy`
     pub panel: String,
-    /// in the legend
+    /// its name in the legend
     pub name: String,
-    /// may be empty
+    /// its unit; may be empty
     pub unit: String,
-    /// at each moment; a number that is not finite interrupts the curve
+    /// its value at each moment; a value that is not finite interrupts the curve
     pub values: Vec<f64>,
 }
 
-/// The page.
+/// The text of the page.
 pub fn page(animation: &Animation) -> String {
     let mut shown = animation.clone();
     shown.thin();
-    // JSON has no numbers that are not finite: they become null. Nothing in a string can end the element it
-    // stands in.
+    // JSON represents numbers that are not finite as null. `<` is escaped, so that no string can end the
+    // element that contains the data.
     let data = serde_json::to_string(&shown).unwrap_or_default().replace('<', "\\u003c");
     let (title, line, setup) = (escaped(&animation.title), animation.setup.line(), animation.setup.html());
     format!(
@@ -157,7 +160,7 @@ pub fn page(animation: &Animation) -> String {
 }
 
 impl Animation {
-    /// Leaves out moments where there are too many, none of them at an event, nor the last.
+    /// Removes moments if there are too many, but none at an event, and not the last.
     pub fn thin(&mut self) {
         let stride = self.times.len().div_ceil(MOMENTS).max(1);
         let last = self.times.len().saturating_sub(1);

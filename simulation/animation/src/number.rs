@@ -1,6 +1,6 @@
 //! Numbers as pages and tables write them.
 
-/// A number to six digits, as short as it can be.
+/// A number to six digits, in the shortest form.
 pub fn number(value: f64) -> String {
     let rounded = format!("{value:.5e}");
     let exponent = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
@@ -18,7 +18,7 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// Digits without zeros behind the point, and what follows them.
+/// The digits without trailing zeros after the point, followed by `rest`.
 fn shortened(digits: &str, rest: &str) -> String {
     let short = match digits.contains('.') {
         true => digits.trim_end_matches('0').trim_end_matches('.'),

@@ -119,30 +119,35 @@ impl<'m> Recording<'m> {
             inputs: simulation.inputs(),
         };
         let forces = simulation.contact_forces().map_or(Vec::new(), |(forces, _)| forces);
-        let force =
-            |contact: usize| forces.iter().find(|(index, _)| *index == contact).map(|(_, force)| *force);
-        self.moment(&state, force);
+        self.sample(&state, &forces);
+    }
+
+    /// A state, with the forces of closed contacts along their n, t, s, N.
+    pub fn sample(&mut self, state: &Borrowed<'_>, forces: &[(usize, Vector3<f64>)]) {
+        self.moment(state, |contact| {
+            forces.iter().find(|(index, _)| *index == contact).map(|(_, force)| *force)
+        });
     }
 
     /// A state by itself, without forces of contacts.
     pub fn still(&mut self, state: &Borrowed<'_>) {
-        self.moment(state, |_| None);
+        self.sample(state, &[]);
     }
 
     /// The state in which an event found the mechanism: curves jump there, instead of rising towards it from
     /// the moment before.
     pub fn before(&mut self, event: &Event, simulation: &Simulation<'_>) {
+        self.before_with(event, simulation.inputs());
+    }
+
+    /// As [`Recording::before`], with the inputs then.
+    pub fn before_with(&mut self, event: &Event, inputs: &[f64]) {
         let speeds = match &event.kind {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => &struck.speeds_before,
             EventKind::SimultaneousCollision(struck) => &struck.speeds_before,
             _ => &event.speeds,
         };
-        let state = Borrowed {
-            time: event.time,
-            coordinates: &event.coordinates,
-            speeds,
-            inputs: simulation.inputs(),
-        };
+        let state = Borrowed { time: event.time, coordinates: &event.coordinates, speeds, inputs };
         // Which contacts were closed is known; their forces are those of the moment before.
         let last = self.last.clone();
         self.shown.before.push(self.shown.times.len());

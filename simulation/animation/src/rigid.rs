@@ -1,15 +1,16 @@
-//! Which points turn about the origin O at a fixed distance, so that a line from O to them shows a link.
+//! Finds the points that move at a fixed distance from the origin O, so that a line from O to them represents
+//! a link.
 
 use hodograph::{ComponentKind, Contacts, State as Borrowed};
 use hodograph_model::numeric::State;
 use nalgebra::Vector3;
 
-/// States that are compared with the first.
+/// Number of states that are compared with the first.
 const OTHERS: usize = 3;
-/// A distance changes if it does by more than this part of it.
+/// A distance is constant if it changes by at most this part of it.
 const SAME: f64 = 1e-9;
 
-/// Whether the position of a point from O changes with the coordinates, and its length does not.
+/// Whether the position of a point relative to O changes with the coordinates, but its distance does not.
 pub fn turns_about_origin(mechanism: &dyn Contacts<f64>, point: usize, state: &State) -> bool {
     let place = |coordinates: &[f64]| -> Option<Vector3<f64>> {
         let inputs = vec![0.0; mechanism.count(ComponentKind::Input)];

@@ -1,8 +1,8 @@
-//! Chooses the points of a mechanism that the animation joins by lines.
+//! Chooses the points of a mechanism that the animation connects by lines.
 
-/// Lines that make a stick figure: from each point to the one it is defined from (`from`, by place in the
-/// list; `None` for a point by itself), and from the centre of each body to its points. A line is drawn once,
-/// and none from a point to itself.
+/// The lines of a stick figure: from each point to the one relative to which it is defined (`from`, index in
+/// the list; `None` for an independent point), and from the centre of each body to its points. Every line
+/// occurs once, and none connects a point with itself.
 pub fn segments(from: &[Option<usize>], bodies: &[(usize, Vec<usize>)]) -> Vec<[usize; 2]> {
     let chain = from.iter().enumerate().filter_map(|(point, from)| from.map(|from| [from, point]));
     let spokes = bodies.iter().flat_map(|(centre, points)| points.iter().map(move |&point| [*centre, point]));

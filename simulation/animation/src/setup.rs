@@ -1,5 +1,8 @@
 //! Writes what a motion is the motion of: surfaces, parameters, initial values, and the text of the model.
 
+use hodograph::Surface;
+use hodograph_model::model::mechanism::{Mechanism, Variable};
+use hodograph_model::numeric::State;
 use hodograph_model::page::escaped;
 
 use crate::number::number;
@@ -31,6 +34,27 @@ pub struct Value {
 }
 
 impl Setup {
+    /// Of a motion of a model from a state, on these surfaces of contacts by number; `text` is that of the model.
+    pub fn of(model: &Mechanism, state: &State, surfaces: &[(usize, Surface<f64>)], text: String) -> Self {
+        let value = |(quantity, &value): (&Variable, &f64)| Value {
+            name: quantity.name.clone(),
+            value,
+            unit: if quantity.unit == "1" { String::new() } else { quantity.unit.clone() },
+            docs: quantity.docs.trim().to_owned(),
+        };
+        let of_contact = |(contact, surface): &(usize, Surface<f64>)| {
+            let name = model.contacts.get(*contact).map_or(String::new(), |contact| contact.name.clone());
+            (name, surface.mu, surface.e, surface.law.name().to_owned())
+        };
+        let coordinates = model.coordinates.iter().zip(&state.coordinates);
+        Setup {
+            surfaces: surfaces.iter().map(of_contact).collect(),
+            parameters: model.parameters.iter().zip(&state.parameters).map(value).collect(),
+            start: coordinates.chain(model.speeds.iter().zip(&state.speeds)).map(value).collect(),
+            model: text,
+        }
+    }
+
     /// The surfaces in a line, as a paragraph of a page.
     pub fn line(&self) -> String {
         let of = |(name, mu, e, law): &(String, f64, f64, String)| {

@@ -1,33 +1,34 @@
-//! Outlines of shapes, along the axes of the frame with which they move.
+//! Outlines of shapes, along the axes of the frame that carries them.
 
 use nalgebra::Vector3;
 use serde::Serialize;
 
-/// Points on a circle.
-const ROUND: usize = 40;
-/// Lines of a grid in each direction.
+/// Number of points of a circle.
+const CIRCLE_POINTS: usize = 40;
+/// Number of lines of a grid in each direction.
 const GRID: usize = 10;
 
-/// A shape as it is drawn: the silhouette of all that lies within a distance of some points, and lines on it.
+/// A shape for drawing: the silhouette of all points within a distance of a convex hull, and lines on the
+/// surface.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shape {
-    /// as in the model
+    /// name in the model
     pub name: String,
-    /// such as `#c8362e`
+    /// colour, such as `#c8362e`
     pub colour: String,
-    /// the frame that carries it, by its place in `frames`; without one it is fixed in N
+    /// the frame that carries it, an index in `frames`; `None`: fixed in N
     pub frame: Option<usize>,
-    /// points whose hull it is, from the point of the frame along its axes, m
+    /// the points of the convex hull, relative to the origin of the frame and along its axes, m
     pub core: Vec<[f64; 3]>,
-    /// how far it reaches beyond the hull, m
+    /// the distance of the surface from the hull, m
     pub round: f64,
     /// lines on its surface
     pub lines: Vec<Vec<[f64; 3]>>,
-    /// it is a ground: drawn first, and no measure of the picture
+    /// whether it is a ground: drawn first, and ignored for the extent of the picture
     pub ground: bool,
 }
 
-/// The place and directions of a shape.
+/// The position and the axes of a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// its centre
@@ -37,7 +38,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// A place with an axis, and two others across it.
+    /// A position with an axis, and two others perpendicular to it.
     pub fn along(at: Vector3<f64>, axis: Vector3<f64>) -> Self {
         let least = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
         let first = axis.cross(&least).normalize();
@@ -48,21 +49,21 @@ impl Place {
         (self.at + self.axes[0] * x + self.axes[1] * y + self.axes[2] * z).into()
     }
 
-    /// A closed ellipse: the first and second semi-axes lie along two of the axes.
+    /// A closed ellipse; its semi-axes `a` and `b` lie along the axes `i` and `j`.
     fn ellipse(&self, [i, j]: [usize; 2], [a, b]: [f64; 2], height: f64) -> Vec<[f64; 3]> {
         let at = |k: usize| {
-            let angle = std::f64::consts::TAU * k as f64 / ROUND as f64;
+            let angle = std::f64::consts::TAU * k as f64 / CIRCLE_POINTS as f64;
             let mut place = [0.0; 3];
             place[i] = a * angle.cos();
             place[j] = b * angle.sin();
             place[3 - i - j] = height;
             self.point(place[0], place[1], place[2])
         };
-        (0..=ROUND).map(at).collect()
+        (0..=CIRCLE_POINTS).map(at).collect()
     }
 }
 
-/// The points and lines of an outline, and how far it reaches beyond the points.
+/// The points of the hull and the lines of an outline, and the distance of the surface from the hull.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     core: Vec<[f64; 3]>,
@@ -77,20 +78,20 @@ impl Outline {
         Shape { name: name.to_owned(), colour, frame, core, round, lines, ground }
     }
 
-    /// A ball, with two great circles that show how it turns.
+    /// A sphere, with two great circles that show its rotation.
     pub fn sphere(place: Place, r: f64) -> Self {
         let lines = vec![place.ellipse([0, 1], [r, r], 0.0), place.ellipse([0, 2], [r, r], 0.0)];
         Outline { core: vec![place.at.into()], round: r, lines }
     }
 
-    /// All within a radius of a segment.
+    /// A capsule: all points within a radius of a segment.
     pub fn capsule(place: Place, [r, l]: [f64; 2]) -> Self {
         let ends = [0.5 * l, -0.5 * l];
         let lines = ends.map(|z| place.ellipse([0, 1], [r, r], z)).into();
         Outline { core: ends.map(|z| place.point(0.0, 0.0, z)).into(), round: r, lines }
     }
 
-    /// A cylinder; of no length, a disc.
+    /// A cylinder; a disc if its length is zero.
     pub fn cylinder(place: Place, [r, l]: [f64; 2]) -> Self {
         let rims: Vec<Vec<[f64; 3]>> = [0.5 * l, -0.5 * l].map(|z| place.ellipse([0, 1], [r, r], z)).into();
         let mut lines = rims.clone();
@@ -98,15 +99,15 @@ impl Outline {
         Outline { core: rims.concat(), round: 0.0, lines }
     }
 
-    /// A cone on its base.
+    /// A cone.
     pub fn cone(place: Place, [r, h]: [f64; 2]) -> Self {
         let (rim, apex) = (place.ellipse([0, 1], [r, r], 0.0), place.point(0.0, 0.0, h));
-        let sides = [0, ROUND / 2].map(|k| vec![rim[k], apex]);
+        let sides = [0, CIRCLE_POINTS / 2].map(|k| vec![rim[k], apex]);
         let lines = [vec![rim.clone()], sides.into()].concat();
         Outline { core: [rim, vec![apex]].concat(), round: 0.0, lines }
     }
 
-    /// A tyre.
+    /// A torus.
     pub fn torus(place: Place, [big, r]: [f64; 2]) -> Self {
         let lines = [big + r, big - r].map(|a| place.ellipse([0, 1], [a, a], 0.0));
         let mut lines: Vec<Vec<[f64; 3]>> = lines.into();
@@ -121,7 +122,7 @@ impl Outline {
             place.ellipse([1, 2], [b, c], 0.0),
             place.ellipse([0, 2], [a, c], 0.0),
         ];
-        // points all round, at equal steps of height and the golden angle
+        // points at equal steps of height, turned by the golden angle
         let core = (0..240).map(|i| {
             let z = 1.0 - (2 * i + 1) as f64 / 240.0;
             let (ring, angle) = ((1.0 - z * z).sqrt(), 2.399_963_229_728_653 * i as f64);
@@ -141,7 +142,7 @@ impl Outline {
         Outline { core: (0..8).map(corner).collect(), round: 0.0, lines }
     }
 
-    /// The hull of vertices; the lines between few of them.
+    /// The convex hull of vertices; with lines between them if there are few.
     pub fn polytope(vertices: Vec<[f64; 3]>) -> Self {
         let n = if vertices.len() <= 4 { vertices.len() } else { 0 };
         let pairs = (0..n).flat_map(|i| (0..i).map(move |j| (i, j)));
@@ -149,7 +150,7 @@ impl Outline {
         Outline { core: vertices, round: 0.0, lines }
     }
 
-    /// A square part of a plane, so wide.
+    /// A square part of a plane with a given width.
     pub fn plane(place: Place, width: f64) -> Self {
         let patch = Outline::height(place, width, |_, _| Some(0.0));
         let half = 0.5 * width;
@@ -157,7 +158,7 @@ impl Outline {
         Outline { core: corners.map(|(x, y)| place.point(x, y, 0.0)).into(), ..patch }
     }
 
-    /// A square part of a surface z = h(x, y), so wide.
+    /// A square part of a surface z = h(x, y) with a given width.
     pub fn height(place: Place, width: f64, height: impl Fn(f64, f64) -> Option<f64>) -> Self {
         let flat =
             height(0.37 * width, 0.21 * width) == Some(0.0) && height(-0.2 * width, 0.1 * width) == Some(0.0);
@@ -177,7 +178,7 @@ impl Outline {
         Outline { core: Vec::new(), round: 0.0, lines }
     }
 
-    /// A part of a curve y = h(x), so wide.
+    /// A part of a curve y = h(x) with a given width.
     pub fn curve(place: Place, width: f64, height: impl Fn(f64) -> Option<f64>) -> Self {
         let points = (0..=12 * GRID).filter_map(|k| {
             let x = width * (k as f64 / (12 * GRID) as f64 - 0.5);
@@ -206,7 +207,7 @@ mod tests {
         assert!((a.cross(&b) - c).norm() < 1e-15 && (a.norm() - 1.0).abs() < 1e-15);
     }
 
-    /// Lines lie on the surfaces, and the hull with its rounding is as wide as the shape.
+    /// Lines lie on the surfaces, and the rounded hull has the size of the shape.
     #[test]
     fn outlines_have_the_sizes_of_their_shapes() {
         let at = place().at;

@@ -1,4 +1,4 @@
-//! The shapes of a model as outlines, and the planes of contacts that have none.
+//! Outlines of the shapes of a model, and of the planes of contacts without shapes.
 
 use hodograph::{Contacts, State as Borrowed};
 use hodograph_model::model::mechanism::{Against, FrameId, Height, Kind, Mechanism as Model, PointId, Shape};
@@ -9,37 +9,38 @@ use nalgebra::{Matrix3, Vector3};
 use crate::gap::gap;
 use crate::{Animation, Frame, Outline, Place, Shape as Shown};
 
-/// Colours of shapes that state none, one after another.
+/// Colours of shapes without a stated colour, used in turn.
 const COLOURS: [&str; 6] = ["#5b8db8", "#c98a3c", "#6a9f6a", "#a8749b", "#8a8f98", "#b5655b"];
-/// The colour of what is fixed in N.
+/// The colour of shapes that are fixed in N.
 const GROUND: &str = "#8c8c84";
-/// A plane turns or moves by less than this, m.
+/// A plane is at rest if it turns or moves by less than this, m.
 const STILL: f64 = 1e-9;
 
-/// What is known of the shapes before the motion is.
+/// The data of shapes before the motion is known.
 pub struct Solids {
     shapes: Vec<(usize, Option<usize>)>,
-    /// frames of `Animation::frames` beyond those of bodies: of the model, and the point where they are
+    /// frames of `Animation::frames` in addition to those of bodies: frame of the model, and the point at its
+    /// origin
     pub frames: Vec<(FrameId, PointId)>,
-    /// per contact without shapes: its plane, while it stays the same
-    planes: Vec<Seen>,
+    /// for each contact without shapes its plane, as long as it is at rest
+    planes: Vec<ObservedPlane>,
 }
 
-/// What was seen of the plane of a contact.
+/// The observations of the plane of a contact.
 #[derive(Clone, Copy)]
-enum Seen {
+enum ObservedPlane {
     Nothing,
     Plane { normal: Vector3<f64>, height: f64, below: Vector3<f64> },
     Moves,
 }
 
 impl Solids {
-    /// The shapes that can be drawn; frames that no body has are added to the animation.
+    /// The shapes that can be drawn; frames without a body are added to the animation.
     pub fn of(model: &Model, state: &State, shown: &mut Animation) -> Self {
         let mut solids = Solids {
             shapes: Vec::new(),
             frames: Vec::new(),
-            planes: vec![Seen::Nothing; model.contacts.len()],
+            planes: vec![ObservedPlane::Nothing; model.contacts.len()],
         };
         let Ok(views) = Views::at(model, state) else { return solids };
         let with_frames: Vec<(FrameId, PointId)> =
@@ -48,7 +49,8 @@ impl Solids {
             if !views.now.same_root(shape.at.point, PointId::O) {
                 continue;
             }
-            // a frame made by `spin` has no axes: round shapes are drawn along those that it spins in
+            // a frame made by `spin` has no axes of its own: round shapes are drawn along those of the frame
+            // in which it spins
             let mut frame = shape.frame;
             while views.now.orientation(frame).is_err() {
                 let Some(parent) = model.frames[frame.0].parent else { break };
@@ -72,34 +74,34 @@ impl Solids {
         solids
     }
 
-    /// A moment of the motion: whether the planes of contacts without shapes stay.
+    /// Records a moment of the motion: whether the planes of contacts without shapes are at rest.
     pub fn moment(&mut self, mechanism: &dyn Contacts<f64>, model: &Model, state: &Borrowed<'_>) {
         for (i, contact) in model.contacts.iter().enumerate() {
             let fixed = matches!(contact.against, Against::Fixed) && contact.shapes.is_none();
-            if !fixed || matches!(self.planes[i], Seen::Moves) {
+            if !fixed || matches!(self.planes[i], ObservedPlane::Moves) {
                 continue;
             }
             let (Ok(here), Some(gap)) = (mechanism.contact_state(i, state), gap(mechanism, i, state)) else {
-                self.planes[i] = Seen::Moves;
+                self.planes[i] = ObservedPlane::Moves;
                 continue;
             };
             let Ok(place) = mechanism.position(contact.point.0, state) else { continue };
             let below = place - here.normal * gap;
-            let now = Seen::Plane { normal: here.normal, height: here.normal.dot(&below), below };
+            let now = ObservedPlane::Plane { normal: here.normal, height: here.normal.dot(&below), below };
             self.planes[i] = match self.planes[i] {
-                Seen::Nothing => now,
-                Seen::Plane { normal, height, .. }
+                ObservedPlane::Nothing => now,
+                ObservedPlane::Plane { normal, height, .. }
                     if (normal - here.normal).norm() > STILL
                         || (height - here.normal.dot(&below)).abs() > STILL * (1.0 + height.abs()) =>
                 {
-                    Seen::Moves
+                    ObservedPlane::Moves
                 }
                 same => same,
             };
         }
     }
 
-    /// All outlines, when the extent of the motion is known.
+    /// All outlines, after the extent of the motion is known.
     pub fn finish(self, model: &Model, state: &State, shown: &Animation) -> Vec<Shown> {
         let Ok(views) = Views::at(model, state) else { return Vec::new() };
         let (middle, extent) = extent(model, &views.now, shown);
@@ -130,7 +132,7 @@ impl Solids {
         }
         let mut known: Vec<(Vector3<f64>, f64)> = Vec::new();
         for (contact, seen) in model.contacts.iter().zip(&self.planes) {
-            let Seen::Plane { normal, height, below } = *seen else { continue };
+            let ObservedPlane::Plane { normal, height, below } = *seen else { continue };
             let same = |(other, at): &(Vector3<f64>, f64)| {
                 (other - normal).norm() < STILL && (at - height).abs() < 1e-6 * (1.0 + height.abs())
             };
@@ -146,13 +148,13 @@ impl Solids {
     }
 }
 
-/// Where a shape is seen from.
+/// The frame in which a shape is described.
 struct Local<'a> {
     values: &'a Evaluator<'a>,
-    /// the point of the frame, and the axes of the frame as columns
+    /// the origin of the frame, and its axes as columns
     origin: Vector3<f64>,
     turned: Matrix3<f64>,
-    /// of the motion
+    /// centre of the motion
     middle: Vector3<f64>,
     extent: f64,
 }
@@ -185,7 +187,7 @@ impl Local<'_> {
             }
             (None, None) => Place { at, axes: [Vector3::x(), Vector3::y(), Vector3::z()] },
         };
-        // what has no end is drawn around the middle of the motion, if it stands still
+        // unbounded shapes at rest are drawn around the centre of the motion
         let endless = |up: usize| {
             let mut place = place;
             if fixed {
@@ -233,11 +235,11 @@ impl Local<'_> {
     }
 }
 
-/// For each point, whether it is one that a pair of shapes gives.
+/// For each point, whether it is the contact point of a pair of shapes.
 pub fn places_of_shapes(model: &Model) -> Vec<bool> {
     let mut out = vec![false; model.points.len()];
     for contact in model.contacts.iter().filter(|contact| contact.shapes.is_some()) {
-        // a particle touches where it is
+        // a particle is its own contact point
         let particle = contact.body.is_some_and(|body| model.bodies[body.0].frame.is_none());
         out[contact.point.0] |= !particle;
         if let Against::Point(struck, _) = contact.against {
@@ -259,7 +261,7 @@ fn place(values: &Evaluator<'_>, point: PointId) -> Option<Vector3<f64>> {
     at.iter().all(|x| x.is_finite()).then_some(at)
 }
 
-/// The middle and the width of what points and shapes pass, with room about them.
+/// The centre and the width of the region that points and shapes pass through, with a margin.
 fn extent(model: &Model, values: &Evaluator<'_>, shown: &Animation) -> (Vector3<f64>, f64) {
     let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     let places = shown.points.iter().flat_map(|point| &point.places);

@@ -5,7 +5,7 @@ use super::*;
 #[path = "../../../generator/cli/tests/common/browser.rs"]
 mod browser;
 
-/// A double pendulum that is struck twice, of as many moments as wanted.
+/// A double pendulum that is struck twice, with a given number of moments.
 fn pendulum(moments: usize) -> Animation {
     let times: Vec<f64> = (0..moments).map(|index| 3.0 * index as f64 / (moments - 1) as f64).collect();
     let [mut first, mut second] = [Vec::new(), Vec::new()];
@@ -68,7 +68,7 @@ fn data(page: &str) -> serde_json::Value {
 }
 
 #[test]
-fn lines_join_what_is_defined_from_another_and_bodies_to_their_points() {
+fn lines_connect_points_with_those_they_are_defined_by_and_with_their_bodies() {
     let lines = segments(&[None, Some(0), Some(1), Some(1), None], &[(1, vec![0, 2, 1, 4]), (4, vec![9])]);
     assert_eq!(lines, [[0, 1], [1, 2], [1, 3], [1, 4]]);
 }
@@ -82,12 +82,12 @@ fn pages_hold_everything_and_load_nothing() {
     let data = data(&page);
     assert_eq!(data["points"][2]["name"], "Tip");
     assert_eq!(data["points"][2]["places"].as_array().unwrap().len(), 100);
-    // What is no number is a gap in the curve.
+    // NaN is a gap in the curve.
     assert!(data["series"][2]["values"].as_array().unwrap().iter().any(|value| value.is_null()));
 }
 
 #[test]
-fn no_name_can_end_the_data_or_the_title() {
+fn names_cannot_end_the_data_or_the_title() {
     let mut animation = pendulum(10);
     animation.title = "</title><script>alert(1)</script>".to_owned();
     animation.points[0].name = "</script><b>".to_owned();
@@ -112,8 +112,7 @@ fn long_motions_are_thinned_but_for_their_events() {
     }
 }
 
-/// Time runs, the tip moves where the data say, keys and buttons do what they should, and no two names stand
-/// on each other.
+/// Time runs, the tip moves as in the data, keys and buttons work, and no two names overlap.
 const MOTION: &str = r#"
 const data = JSON.parse(document.getElementById('data').textContent);
 const text = (id) => document.getElementById(id).textContent;
@@ -195,7 +194,7 @@ fn mechanisms_move_in_a_browser() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
-/// N.x points to the right and N.y upwards where a motion in their plane is looked at from above.
+/// If a motion in the plane of N.x and N.y is viewed from above, N.x points to the right and N.y upwards.
 const UPRIGHT: &str = r#"
 const data = JSON.parse(document.getElementById('data').textContent);
 const slider = document.getElementById('time');
@@ -223,9 +222,9 @@ fn planes_are_seen_upright_in_a_browser() {
     }
 }
 
-/// What the model says stands in the page, and cannot end what it stands in.
+/// The texts of the model are in the page, and cannot end the elements that contain them.
 #[test]
-fn pages_tell_of_what_they_show_the_motion() {
+fn pages_describe_the_model_of_their_motion() {
     let setup = Setup {
         surfaces: vec![("tip".to_owned(), 0.3, 0.7, "stronge".to_owned())],
         parameters: vec![Value {

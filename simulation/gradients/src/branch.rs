@@ -1,4 +1,5 @@
-//! Follows a periodic motion through the values of a parameter, with the points where its kind or its stability changes.
+//! Follows a periodic motion through the values of a parameter, and locates the points where the branch or
+//! its stability changes.
 //!
 //! Theory: docs/theory.md, section 20.
 
@@ -8,31 +9,31 @@ use hodograph_simulation::Options;
 use nalgebra::{DMatrix, DVector};
 
 use crate::By;
-use crate::family::changed;
+use crate::family::set_value;
 use crate::orbit::{Orbit, OrbitError, Periodic, Returned, Task, find_orbit, solve};
 
 /// A periodic motion at a value of the parameter.
 #[derive(Clone, Debug)]
 pub struct BranchPoint {
-    /// the value
+    /// the value of the parameter
     pub value: f64,
     /// the motion
     pub orbit: Orbit,
 }
 
-/// A point where a branch changes.
+/// A point where a branch or its stability changes.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// how
+    /// the kind of change
     pub kind: ChangeKind,
-    /// the motion there
+    /// the motion at this point
     pub at: BranchPoint,
 }
 
-/// How a branch of periodic motions changes.
+/// The ways in which a branch of periodic motions changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// The branch turns back: a multiplier is 1, and beyond this value there is no motion of the branch.
+    /// The branch turns back: a multiplier is 1, and beyond this value the branch has no motion.
     Fold,
     /// A multiplier is -1: motions of twice the period branch off.
     PeriodDoubling,
@@ -41,7 +42,7 @@ pub enum ChangeKind {
 }
 
 impl ChangeKind {
-    /// A stable lower-case name.
+    /// The name of the kind: lower case, and stable between versions.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fold => "fold",
@@ -56,30 +57,30 @@ impl ChangeKind {
 pub struct Branch {
     /// its points, in order
     pub points: Vec<BranchPoint>,
-    /// where it changes, in the same order
+    /// its changes, in the same order
     pub changes: Vec<Change>,
-    /// why it was not followed to the end of the range, if it was not
+    /// why the branch was not followed to the end of the range, if it was not
     pub ended: Option<String>,
 }
 
-/// The first step, the greatest and the least, as parts of the range.
-const FIRST: f64 = 0.02;
-const GREATEST: f64 = 0.05;
-const LEAST: f64 = 1e-7;
-/// Newton's method brings a point onto the branch in so many steps.
-const STEPS: usize = 8;
-/// A point lies on the branch where the motion misses by less than this part of the state.
-const FOUND: f64 = 1e-10;
-/// A change is located where its function has fallen to this part, or after so many trials.
-const LOCATED: f64 = 1e-13;
-const TRIALS: usize = 40;
+/// The first, the greatest and the smallest step, relative to the range.
+const FIRST_STEP: f64 = 0.02;
+const MAX_STEP: f64 = 0.05;
+const MIN_STEP: f64 = 1e-7;
+/// The largest number of Newton steps that bring a point onto the branch.
+const NEWTON_STEPS: usize = 8;
+/// A point lies on the branch if the motion returns to its state up to this relative difference.
+const TOLERANCE: f64 = 1e-10;
+/// A change is located if its test function has decreased to this part, or after this number of evaluations.
+const LOCATED_PART: f64 = 1e-13;
+const MAX_EVALUATIONS: usize = 40;
 
-/// Follows the periodic motion next to a start state from the value `from` of a parameter (or of mu or e) to `to`, by at most
-/// `most` points. The branch may turn back: it ends where it leaves the range.
+/// Follows the periodic motion next to a start state from the value `from` of a parameter (or of mu or e) to
+/// `to`, in at most `most` points. The branch may turn back; it ends where it leaves the range.
 ///
 /// # Errors
 ///
-/// [`OrbitError`], where the first motion is not found.
+/// [`OrbitError`] if the first motion is not found.
 pub fn follow_branch(
     mechanism: &InterpretedMechanism,
     start: &State<'_>,
@@ -104,11 +105,11 @@ pub fn follow_branch(
     toward[n] = (to - from).signum();
     let mut point = Point::new(orbit, from, &scale, &toward);
     let mut branch = Branch { points: vec![point.public()], changes: Vec::new(), ended: None };
-    let mut h = FIRST;
+    let mut h = FIRST_STEP;
     while branch.points.len() < most {
         let next = match family.step(&point, h, &scale) {
             Ok(next) => next,
-            Err(error) if h <= LEAST => {
+            Err(error) if h <= MIN_STEP => {
                 branch.ended = Some(error.to_string());
                 break;
             }
@@ -131,12 +132,12 @@ pub fn follow_branch(
         if left {
             break;
         }
-        h = (1.5 * h).min(GREATEST);
+        h = (1.5 * h).min(MAX_STEP);
     }
     Ok(branch)
 }
 
-/// The periodic motions of all values of a parameter.
+/// The return map of the motions for all values of a parameter.
 struct Family<'a> {
     mechanism: &'a InterpretedMechanism,
     start: &'a State<'a>,
@@ -145,12 +146,12 @@ struct Family<'a> {
     by: By,
 }
 
-/// A point of a branch, with the tangent of the branch in scaled numbers.
+/// A point of a branch, with the tangent of the branch in scaled variables.
 struct Point {
     orbit: Orbit,
     value: f64,
     tangent: DVector<f64>,
-    /// the functions that vanish at changes, in the order of the kinds
+    /// the test functions that vanish at changes, in the order of the kinds
     tests: [f64; 3],
 }
 
@@ -180,7 +181,7 @@ impl Point {
     }
 }
 
-/// Derivatives of (return - state) by the scaled state and parameter, above a row.
+/// The derivatives of (return - state) with respect to the scaled state and parameter, bordered by a row.
 fn bordered(matrix: &DMatrix<f64>, by: &DMatrix<f64>, scale: &[f64], row: &DVector<f64>) -> DMatrix<f64> {
     let n = matrix.nrows();
     DMatrix::from_fn(n + 1, n + 1, |i, j| match (i == n, j == n) {
@@ -191,10 +192,10 @@ fn bordered(matrix: &DMatrix<f64>, by: &DMatrix<f64>, scale: &[f64], row: &DVect
 }
 
 impl Family<'_> {
-    /// The mechanism and the surfaces at a value.
+    /// The mechanism and the surfaces for a value of the parameter.
     fn at(&self, value: f64) -> Result<(InterpretedMechanism, Options), OrbitError> {
         let (mut mechanism, mut options) = (self.mechanism.clone(), self.options.clone());
-        changed(&mut mechanism, &mut options, self.by, value).map_err(OrbitError::BadRequest)?;
+        set_value(&mut mechanism, &mut options, self.by, value).map_err(OrbitError::BadRequest)?;
         Ok((mechanism, options))
     }
 
@@ -211,7 +212,7 @@ impl Family<'_> {
         task.returned(state)
     }
 
-    /// The point of the branch a length `h` further along the tangent.
+    /// The point of the branch at the distance `h` along the tangent.
     fn step(&self, from: &Point, h: f64, scale: &[f64]) -> Result<Point, OrbitError> {
         let n = from.orbit.state.len();
         let ahead = |place: usize, value: f64| value + h * from.tangent[place] * scale[place];
@@ -219,14 +220,14 @@ impl Family<'_> {
             from.orbit.state.iter().enumerate().map(|(place, value)| ahead(place, *value)).collect();
         let mut value = ahead(n, from.value);
         let mut before = f64::INFINITY;
-        for _ in 0..STEPS {
+        for _ in 0..NEWTON_STEPS {
             let here = self.returned(&state, value)?;
-            if here.residual <= FOUND && (here.residual >= 0.5 * before || here.residual < 1e-14) {
+            if here.residual <= TOLERANCE && (here.residual >= 0.5 * before || here.residual < 1e-14) {
                 return Ok(Point::new(here.orbit(state), value, scale, &from.tangent));
             }
             before = here.residual;
             let off = here.difference(&state);
-            // The correction is across the tangent.
+            // The correction is perpendicular to the tangent.
             let right =
                 DVector::from_fn(n + 1, |place, _| if place < n { -off[place] / scale[place] } else { 0.0 });
             let change = solve(&bordered(&here.matrix, &here.by, scale, &from.tangent), &right);
@@ -234,13 +235,13 @@ impl Family<'_> {
             value += change[n] * scale[n];
         }
         let here = self.returned(&state, value)?;
-        if here.residual > FOUND {
+        if here.residual > TOLERANCE {
             return Err(OrbitError::NotFound(here.residual));
         }
         Ok(Point::new(here.orbit(state), value, scale, &from.tangent))
     }
 
-    /// The point between two where the function of a change vanishes, by false position.
+    /// The point between two others where the test function of a change vanishes, by false position.
     fn locate(
         &self,
         from: &Point,
@@ -252,18 +253,18 @@ impl Family<'_> {
         let (mut low, mut high) = ((0.0, from.test(kind)), (length, to.test(kind)));
         let size = low.1.abs().max(high.1.abs());
         let (mut best, mut stayed): (Option<Point>, Option<bool>) = (None, None);
-        for _ in 0..TRIALS {
+        for _ in 0..MAX_EVALUATIONS {
             let h = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             let Ok(there) = self.step(from, h, scale) else { break };
             let test = there.test(kind);
-            let done = test.abs() <= LOCATED * size;
+            let done = test.abs() <= LOCATED_PART * size;
             if best.as_ref().is_none_or(|best| test.abs() < best.test(kind).abs()) {
                 best = Some(there);
             }
             if done {
                 break;
             }
-            // An end that stays twice would stay for ever.
+            // An end that stays twice would stay forever (Illinois method).
             let is_high = test * high.1 > 0.0;
             if is_high {
                 high = (h, test);

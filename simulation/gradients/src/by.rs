@@ -1,20 +1,20 @@
-//! What a motion is differentiated by.
+//! The variables with respect to which a motion is differentiated.
 
 use std::fmt;
 
 use hodograph::{ComponentKind, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 
-/// A number on which a motion depends.
+/// A variable on which a motion depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum By {
     /// a coordinate of the start state
     Coordinate(usize),
     /// an independent speed of the start state
     Speed(usize),
-    /// a parameter of the model, by its number among those that are not `fixed`
+    /// a parameter of the model, by its index among those that are not `fixed`
     Parameter(usize),
-    /// a named input, which is held
+    /// a named input, which is constant
     Input(usize),
     /// mu of a contact, or of all contacts together
     Friction(Option<usize>),
@@ -23,12 +23,13 @@ pub enum By {
 }
 
 impl By {
-    /// The one with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, or the name of a coordinate, speed, parameter or
-    /// input. Where a model gives a coordinate or parameter the name `mu` or `e`, that is meant.
+    /// The variable with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, or the name of a coordinate, speed,
+    /// parameter or input. If a coordinate or parameter of the model is called `mu` or `e`, the name means
+    /// that.
     ///
     /// # Errors
     ///
-    /// A sentence that says what there is.
+    /// A sentence with the names that exist.
     pub fn named(mechanism: &InterpretedMechanism, name: &str) -> Result<Self, String> {
         type Kind = (ComponentKind, fn(usize) -> By);
         let kinds: [Kind; 4] = [
@@ -60,7 +61,7 @@ impl By {
         })
     }
 
-    /// Its name, as [`By::named`] reads it.
+    /// The name that [`By::named`] reads.
     pub fn name(self, mechanism: &InterpretedMechanism) -> String {
         let of = |kind, index| mechanism.component(kind, index).map_or("?", |component| component.name);
         match self {
@@ -91,14 +92,14 @@ fn names(mechanism: &InterpretedMechanism, kind: ComponentKind) -> Vec<String> {
     (0..mechanism.count(kind)).filter_map(component).map(|component| component.name.to_owned()).collect()
 }
 
-/// Why a motion has no derivative from a time on.
+/// Why a motion has no derivative from some time on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undefined {
-    /// when, s
+    /// the time, s
     pub time: f64,
-    /// number of the contact, if it is about one
+    /// index of the contact, if the reason concerns one
     pub contact: Option<usize>,
-    /// why
+    /// the reason
     pub reason: Reason,
 }
 
@@ -106,33 +107,38 @@ pub struct Undefined {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// A gap closes with no speed: neighbours miss the surface, or hit it with a speed that grows like a root.
+    /// A gap closes with zero normal velocity: neighbouring motions miss the surface, or hit it with a
+    /// velocity that is proportional to the root of the change.
     Grazing,
-    /// Several contacts strike, or several slips end, at one time: neighbours do so in another order.
+    /// Several contacts collide, or several slips end, at the same time: in neighbouring motions they do so
+    /// in different orders.
     AtOnce,
-    /// The outcome of a collision is not differentiable: why, as the solver says.
+    /// The outcome of a collision is not differentiable; with the reason of the solver.
     Impact(hodograph::NonSmoothness),
-    /// More than one mode of the contacts fits, or a sliding contact may lift off or suffer an impact.
+    /// More than one mode of the contacts is possible, or a sliding contact may lift off or suffer an impact
+    /// without collision.
     SeveralModes,
     /// A sliding contact jams and suffers an impact without collision.
     Jam,
-    /// The function that ends a mode vanishes with its rate.
+    /// The function that ends a mode vanishes together with its rate.
     Tangency,
     /// Slip ends while its direction still turns.
     SlipTurns,
     /// The forces of the closed contacts are not unique.
     ForcesNotUnique,
-    /// The start state lies on the border of a contact: by this variable the contact opens, overlaps or begins to slip.
+    /// In the start state a contact is closed, and a change of this variable opens it, makes the bodies
+    /// overlap or begins slip.
     StartInContact(By),
     /// A contact bounced at the start time.
     StartInCollision,
-    /// Small bounces were taken together as lasting contact.
+    /// A sequence of small bounces was replaced by lasting contact.
     Settling,
-    /// The modes changed by something whose time does not follow from the state.
+    /// The modes changed by a cause whose time does not follow from the state.
     ModesChanged,
     /// The mechanism cannot be evaluated.
     State(hodograph::StateError),
-    /// What was integrated anew differs from the motion by so much, relative to the state.
+    /// The motion that was integrated again differs from the original one by this much, relative to the
+    /// state.
     Inaccurate(f64),
 }
 

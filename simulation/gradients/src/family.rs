@@ -1,4 +1,4 @@
-//! Values of parameters, mu and e: what they are, and a mechanism and its surfaces with others.
+//! Reads and changes the values of parameters, mu and e of a mechanism and its surfaces.
 
 use hodograph::{ComponentKind, Contacts, Mechanism, Surface};
 use hodograph_interpreter::InterpretedMechanism;
@@ -6,12 +6,12 @@ use hodograph_simulation::Options;
 
 use crate::By;
 
-/// Gives a parameter, mu or e another value.
+/// Sets a parameter, mu or e to another value.
 ///
 /// # Errors
 ///
-/// Why it is refused.
-pub(crate) fn changed(
+/// Why the value is refused.
+pub(crate) fn set_value(
     mechanism: &mut InterpretedMechanism,
     options: &mut Options,
     by: By,
@@ -25,7 +25,7 @@ pub(crate) fn changed(
             mechanism.set_parameter_values(&all).map_err(|error| error.to_string())
         }
         By::Friction(contact) | By::Restitution(contact) => {
-            stated(mechanism, options);
+            resolve_surfaces(mechanism, options);
             let is_friction = matches!(by, By::Friction(_));
             let of = |place: usize| contact.is_none_or(|contact| contact == place);
             for (_, surface) in options.surfaces.iter_mut().filter(|(place, _)| of(*place)) {
@@ -37,11 +37,29 @@ pub(crate) fn changed(
     }
 }
 
-/// The value of a parameter, mu or e; of several contacts that of the first.
+/// A mechanism and options with other values of parameters, mu and e.
 ///
 /// # Errors
 ///
-/// Why there is none.
+/// Why a value is refused.
+pub fn with_values(
+    mechanism: &InterpretedMechanism,
+    options: &Options,
+    variables: &[By],
+    values: &[f64],
+) -> Result<(InterpretedMechanism, Options), String> {
+    let (mut mechanism, mut options) = (mechanism.clone(), options.clone());
+    for (&by, &value) in variables.iter().zip(values) {
+        set_value(&mut mechanism, &mut options, by, value)?;
+    }
+    Ok((mechanism, options))
+}
+
+/// The value of a parameter, mu or e; for all contacts together that of the first.
+///
+/// # Errors
+///
+/// Why there is no such value.
 pub(crate) fn value_of(mechanism: &InterpretedMechanism, options: &Options, by: By) -> Result<f64, String> {
     match by {
         By::Parameter(index) => {
@@ -51,7 +69,7 @@ pub(crate) fn value_of(mechanism: &InterpretedMechanism, options: &Options, by: 
         }
         By::Friction(contact) | By::Restitution(contact) => {
             let mut options = options.clone();
-            stated(mechanism, &mut options);
+            resolve_surfaces(mechanism, &mut options);
             let own = |(place, _): &&(usize, Surface<f64>)| contact.is_none_or(|contact| contact == *place);
             let (_, surface) = options.surfaces.iter().find(own).ok_or("the contact has no surface")?;
             Ok(if matches!(by, By::Friction(_)) { surface.mu } else { surface.e })
@@ -60,8 +78,8 @@ pub(crate) fn value_of(mechanism: &InterpretedMechanism, options: &Options, by: 
     }
 }
 
-/// Gives each contact the surface of its own that it has by the options or the model.
-pub(crate) fn stated(mechanism: &InterpretedMechanism, options: &mut Options) {
+/// Gives each contact its own entry in the options, with the surface of the options or else of the model.
+pub(crate) fn resolve_surfaces(mechanism: &InterpretedMechanism, options: &mut Options) {
     for contact in 0..mechanism.count(ComponentKind::Contact) {
         if options.surfaces.iter().all(|(place, _)| *place != contact) {
             let surface = options.surface.or_else(|| mechanism.surface(contact));

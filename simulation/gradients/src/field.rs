@@ -1,7 +1,8 @@
-//! Rates of a motion in known modes, and all that they follow from, with derivatives along `k` directions.
+//! Rates of a motion in known modes, and the quantities from which they are computed, with derivatives along
+//! `k` directions.
 //!
-//! Numbers with derivatives stand as values, and as rows of `k` derivatives each. The last direction is kept for the motion
-//! itself: along it time goes on.
+//! A quantity with derivatives is stored as its values, and as rows of `k` derivatives each. The last
+//! direction is the motion itself: its derivatives are time derivatives.
 //!
 //! Theory: docs/theory.md, section 19.1.
 
@@ -16,20 +17,20 @@ use hodograph_program::program::{ContactQuantity, Quantity};
 
 use crate::By;
 
-/// A state and how it changes along the directions.
+/// A state with its derivatives along the directions.
 #[derive(Clone, Copy)]
 pub(crate) struct At<'a> {
     pub time: f64,
     /// coordinates and independent speeds
     pub state: &'a [f64],
-    /// their derivatives: as many rows, `k` columns
+    /// their derivatives: one row each, `k` columns
     pub by: &'a [f64],
-    /// the derivatives of the time (k); none where it does not change
+    /// derivatives of the time (k); empty if they are zero
     pub time_by: &'a [f64],
     pub inputs: &'a [f64],
 }
 
-/// The equations of a mechanism, with what they are differentiated by.
+/// The equations of a mechanism and the variables with respect to which they are differentiated.
 pub(crate) struct Field<'m> {
     pub mechanism: &'m InterpretedMechanism,
     pub by: &'m [By],
@@ -37,18 +38,18 @@ pub(crate) struct Field<'m> {
     /// number of coordinates and of independent speeds
     pub n: usize,
     pub p: usize,
-    /// number of directions: those of `by`, and the motion itself
+    /// number of directions: one for each variable of `by`, and the motion itself
     pub k: usize,
     by_parameters: Vec<f64>,
     by_inputs: Vec<f64>,
-    routines: RefCell<BTreeMap<Asked, Rc<Directional>>>,
+    routines: RefCell<BTreeMap<RoutineKey, Rc<Directional>>>,
 }
 
-/// What is asked of the equations.
+/// The key of a routine that evaluates equations.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Asked {
-    /// rates, and what forces at these contacts follow from
-    Together(Vec<usize>),
+enum RoutineKey {
+    /// rates, and the terms for the forces at these contacts
+    ContactTerms(Vec<usize>),
     /// a gap
     Gap(usize),
 }
@@ -90,13 +91,13 @@ impl<'m> Field<'m> {
         self.surfaces.iter().find(|(other, _)| *other == contact).map(|(_, surface)| *surface)
     }
 
-    fn routine(&self, asked: Asked) -> Rc<Directional> {
+    fn routine(&self, key: RoutineKey) -> Rc<Directional> {
         let make = || {
             let of = |contact: usize, quantity| Quantity::Contact(contact as u32, quantity);
-            let quantities: Vec<Quantity> = match &asked {
-                Asked::Gap(contact) => vec![of(*contact, ContactQuantity::Gap)],
-                Asked::Together(contacts) => {
-                    let each = |&contact: &usize| OF_EACH.map(|quantity| of(contact, quantity));
+            let quantities: Vec<Quantity> = match &key {
+                RoutineKey::Gap(contact) => vec![of(*contact, ContactQuantity::Gap)],
+                RoutineKey::ContactTerms(contacts) => {
+                    let each = |&contact: &usize| OF_CONTACT.map(|quantity| of(contact, quantity));
                     let whole = [Quantity::CoordinateRates, Quantity::Accelerations];
                     whole.into_iter().chain(contacts.iter().flat_map(each)).collect()
                 }
@@ -106,15 +107,15 @@ impl<'m> Field<'m> {
             Rc::new(Directional::new(program, constants, parameters, self.k, &quantities))
         };
         let mut routines = self.routines.borrow_mut();
-        if let Some(known) = routines.get(&asked) {
+        if let Some(known) = routines.get(&key) {
             return Rc::clone(known);
         }
         let made = make();
-        routines.insert(asked, Rc::clone(&made));
+        routines.insert(key, Rc::clone(&made));
         made
     }
 
-    fn compute(&self, asked: Asked, at: &At<'_>) -> Result<(Vec<f64>, Vec<f64>), StateError> {
+    fn compute(&self, key: RoutineKey, at: &At<'_>) -> Result<(Vec<f64>, Vec<f64>), StateError> {
         let (q, u) = at.state.split_at(self.n);
         let (by_q, by_u) = at.by.split_at(self.n * self.k);
         let arguments = Arguments {
@@ -127,7 +128,7 @@ impl<'m> Field<'m> {
         };
         let rates = Rates { time: at.time_by, coordinates: by_q, speeds: by_u, inputs: &self.by_inputs };
         let (mut values, mut derivatives) = (Vec::new(), Vec::new());
-        let done = self.routine(asked).evaluate(&arguments, &rates, &mut values, &mut derivatives);
+        let done = self.routine(key).evaluate(&arguments, &rates, &mut values, &mut derivatives);
         done.map_err(|failed| match failed {
             Failed::Singular(_) => StateError::Singular { what: "the state" },
             Failed::NotFinite => StateError::NotFinite,
@@ -137,32 +138,32 @@ impl<'m> Field<'m> {
 
     /// A gap, and its derivatives.
     pub fn gap(&self, contact: usize, at: &At<'_>) -> Result<(f64, Vec<f64>), StateError> {
-        let (values, by) = self.compute(Asked::Gap(contact), at)?;
+        let (values, by) = self.compute(RoutineKey::Gap(contact), at)?;
         let gap = values.first().ok_or(StateError::Undefined { what: "gap of this contact" })?;
         Ok((*gap, by))
     }
 
-    /// The rates without contact forces, and what forces at these contacts follow from.
-    pub fn together(&self, contacts: &[usize], at: &At<'_>) -> Result<Together, StateError> {
+    /// The rates without contact forces, and the terms for the forces at these contacts.
+    pub fn contact_terms(&self, contacts: &[usize], at: &At<'_>) -> Result<ContactTerms, StateError> {
         let (n, p) = (self.n, self.p);
-        let (values, by) = self.compute(Asked::Together(contacts.to_vec()), at)?;
+        let (values, by) = self.compute(RoutineKey::ContactTerms(contacts.to_vec()), at)?;
         if values.len() != n + p + contacts.len() * (6 * p + 6) {
             return Err(StateError::Undefined { what: "closed contact" });
         }
-        Ok(Together { n, p, k: self.k, values, by })
+        Ok(ContactTerms { n, p, k: self.k, values, by })
     }
 }
 
-/// What forces of a contact follow from, in this order.
-const OF_EACH: [ContactQuantity; 4] = [
+/// The quantities of a contact from which its forces are computed, in this order.
+const OF_CONTACT: [ContactQuantity; 4] = [
     ContactQuantity::PartialVelocities,
     ContactQuantity::Response,
     ContactQuantity::Velocity,
     ContactQuantity::FreeAcceleration,
 ];
 
-/// Rates without contact forces, and of each contact V, M^-1 V^T, velocity and free acceleration.
-pub(crate) struct Together {
+/// Rates without contact forces, and for each contact V, M^-1 V^T, velocity and free acceleration.
+pub(crate) struct ContactTerms {
     n: usize,
     p: usize,
     k: usize,
@@ -170,8 +171,8 @@ pub(crate) struct Together {
     by: Vec<f64>,
 }
 
-impl Together {
-    /// A number.
+impl ContactTerms {
+    /// The value with this index.
     pub fn value(&self, index: usize) -> f64 {
         self.values[index]
     }
@@ -185,27 +186,27 @@ impl Together {
         self.n + self.p + place * (6 * self.p + 6)
     }
 
-    /// Where a partial velocity of a contact stands.
+    /// Index of a partial velocity of a contact.
     pub fn partial(&self, place: usize, axis: usize, speed: usize) -> usize {
         self.of(place) + axis * self.p + speed
     }
 
-    /// Where the response of a speed to a force along an axis stands.
+    /// Index of the response of a speed to a force along an axis.
     pub fn response(&self, place: usize, axis: usize, speed: usize) -> usize {
         self.of(place) + 3 * self.p + 3 * speed + axis
     }
 
-    /// Where a component of the velocity of a contact stands.
+    /// Index of a component of the velocity of a contact.
     pub fn velocity(&self, place: usize, axis: usize) -> usize {
         self.of(place) + 6 * self.p + axis
     }
 
-    /// Where a component of its free acceleration stands.
+    /// Index of a component of its free acceleration.
     pub fn free(&self, place: usize, axis: usize) -> usize {
         self.of(place) + 6 * self.p + 3 + axis
     }
 
-    /// The sizes of the terms that make up the velocity of a contact along an axis.
+    /// The sum of the magnitudes of the terms in the velocity of a contact along an axis.
     pub fn velocity_size(&self, place: usize, axis: usize, speeds: &[f64]) -> f64 {
         let term = |(speed, u): (usize, &f64)| (self.values[self.partial(place, axis, speed)] * u).abs();
         speeds.iter().enumerate().map(term).sum()

@@ -6,76 +6,63 @@ use std::fmt;
 
 use hodograph::{ComponentKind, Mechanism, State, Surface};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::{Options, Simulation};
+use hodograph_simulation::Options;
 use nalgebra::{DMatrix, DVector};
 
-use crate::family::{changed, stated, value_of};
+use crate::family::{resolve_surfaces, value_of, with_values};
+use crate::random::next_random;
+use crate::trajectory::{Trajectory, follow};
 use crate::{By, GradientError, differentiate};
 
-/// A measured motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Trajectory {
-    /// its name, for messages
-    pub name: String,
-    /// when it begins, s
-    pub start: f64,
-    /// coordinates and independent speeds at its beginning: they are taken as they are
-    pub state: Vec<f64>,
-    /// times of the samples after the beginning, s, rising
-    pub times: Vec<f64>,
-    /// a row per sample, a column per measured quantity; NaN where nothing was measured
-    pub samples: DMatrix<f64>,
-}
-
-/// What is fitted to what.
+/// The task of a fit.
 #[derive(Clone, Debug)]
 pub struct FitTask<'a> {
     /// the motions
     pub trajectories: &'a [Trajectory],
-    /// the measured quantities: numbers among coordinates, then independent speeds
+    /// the measured quantities: indices into coordinates followed by independent speeds
     pub measured: &'a [usize],
-    /// by which the differences of each quantity are divided: its error of measurement, or what counts as one
+    /// the divisors of the differences of each quantity: its measurement error, or its scale
     pub units: &'a [f64],
     /// parameters, mu and e
     pub variables: &'a [By],
-    /// so often trajectories are drawn anew, with replacement, and fitted again
+    /// number of bootstrap samples: trajectories are drawn with replacement and fitted again
     pub bootstrap: usize,
-    /// the seed of these draws
+    /// the seed of the bootstrap samples
     pub seed: u64,
 }
 
-/// What came of it.
+/// The result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// the values, in the order of the variables
+    /// the fitted values, in the order of the variables
     pub values: Vec<f64>,
     /// the surfaces of the contacts with these values
     pub surfaces: Vec<(usize, Surface<f64>)>,
-    /// root of the mean square of the differences, in their units
+    /// root mean square of the differences, in their units
     pub rms: f64,
     /// the number of differences
     pub differences: usize,
-    /// standard errors from the curvature of the sum of squares, with the errors that the fit leaves
+    /// standard errors from the curvature of the sum of squares and the remaining differences
     pub errors: Vec<f64>,
     /// correlations of the values
     pub correlations: DMatrix<f64>,
-    /// directions that the data do not determine: changes of the values, relative to their sizes, that change no difference
+    /// directions that the data do not determine: relative changes of the values that change no difference
     pub undetermined: Vec<Vec<f64>>,
-    /// standard deviations of the values of the draws; `None` without draws
+    /// standard deviations of the values over the bootstrap samples; `None` without these
     pub spread: Option<Vec<f64>>,
-    /// trajectories without derivatives at the fit; those were formed by differences
+    /// trajectories without derivatives at the fit; finite differences were used for them
     pub without_derivatives: Vec<String>,
-    /// steps that were made
+    /// number of steps
     pub steps: usize,
 }
 
-/// Why nothing is fitted.
+/// Why a fit fails.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum FitError {
-    /// A motion cannot be followed at the first values: the trajectory, and why.
+    /// A motion cannot be simulated with the initial values: the trajectory, and the error.
     Motion(String, GradientError),
-    /// The task is wrong.
+    /// The task has a mistake.
     BadRequest(String),
 }
 
@@ -90,22 +77,24 @@ impl fmt::Display for FitError {
 
 impl std::error::Error for FitError {}
 
-/// Steps of the method of Levenberg and Marquardt; in a draw, which begins at the fit.
+/// Largest number of steps of the Levenberg-Marquardt method, and of those for a bootstrap sample, which
+/// starts from the fit.
 const STEPS: usize = 60;
-const DRAWN_STEPS: usize = 8;
-/// Damping: at first, and its factors after a step that was made and one that was not.
+const BOOTSTRAP_STEPS: usize = 8;
+/// Damping: initial value, factors after an accepted and after a rejected step, and largest value.
 const DAMPING: f64 = 1e-3;
-const LESS: f64 = 0.2;
-const MORE: f64 = 5.0;
-const MOST: f64 = 1e12;
-/// The fit has ended where the sum of squares falls by less than this part.
-const ENOUGH: f64 = 1e-14;
-/// Singular values of the derivatives by relative changes below this part of the greatest: not determined.
+const DAMPING_DECREASE: f64 = 0.2;
+const DAMPING_INCREASE: f64 = 5.0;
+const MAX_DAMPING: f64 = 1e12;
+/// The method stops if the sum of squares decreases by less than this part.
+const MIN_DECREASE: f64 = 1e-14;
+/// A singular value of the derivatives with respect to relative changes below this part of the greatest means
+/// a direction that the data do not determine.
 const UNDETERMINED: f64 = 1e-8;
-/// Relative step of differences where there is no derivative.
+/// Relative step of finite differences for motions without derivatives.
 const STEP: f64 = 1e-5;
 
-/// Fits the variables, from the values that the mechanism and the options have.
+/// Fits the variables, starting from the values of the mechanism and the options.
 ///
 /// # Errors
 ///
@@ -136,7 +125,7 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
             covariance += vector * vector.transpose() * (square / free / value);
         }
     }
-    // What lies in a direction that is not determined has no error.
+    // A value in an undetermined direction has no error.
     let lost = |place: usize| undetermined.iter().any(|direction| direction[place].abs() > 1e-6);
     let own = |place: usize| f64::sqrt(covariance[(place, place)]);
     let errors =
@@ -145,9 +134,9 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
         let product = own(row) * own(column);
         if product > 0.0 { covariance[(row, column)] / product } else { f64::from(u8::from(row == column)) }
     });
-    let spread = if task.bootstrap == 0 { None } else { Some(problem.draws(&values)?) };
+    let spread = if task.bootstrap == 0 { None } else { Some(problem.bootstrap_spread(&values)?) };
     let (_, mut fitted) = problem.at(&values).map_err(FitError::BadRequest)?;
-    stated(mechanism, &mut fitted);
+    resolve_surfaces(mechanism, &mut fitted);
     Ok(Fit {
         surfaces: fitted.surfaces,
         errors: errors.collect(),
@@ -193,10 +182,10 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
     Ok(())
 }
 
-/// What differs at some values.
+/// The differences between measurements and motions for some values.
 struct Differences {
     differences: DVector<f64>,
-    /// their derivatives by the variables
+    /// their derivatives with respect to the variables
     by: DMatrix<f64>,
     /// trajectories without derivatives
     without: Vec<String>,
@@ -210,14 +199,10 @@ struct Problem<'a> {
 
 impl Problem<'_> {
     fn at(&self, values: &[f64]) -> Result<(InterpretedMechanism, Options), String> {
-        let (mut mechanism, mut options) = (self.mechanism.clone(), self.options.clone());
-        for (&by, &value) in self.task.variables.iter().zip(values) {
-            changed(&mut mechanism, &mut options, by, value)?;
-        }
-        Ok((mechanism, options))
+        with_values(self.mechanism, self.options, self.task.variables, values)
     }
 
-    /// The differences of a trajectory from its motion, in their units.
+    /// The differences between a trajectory and its motion, in their units.
     fn differences_of(&self, trajectory: &Trajectory, states: &[Vec<f64>]) -> Vec<f64> {
         let mut differences = Vec::new();
         for (row, state) in states.iter().enumerate() {
@@ -231,20 +216,11 @@ impl Problem<'_> {
         differences
     }
 
-    /// The motion alone.
+    /// The differences without derivatives.
     fn plain(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
         let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
-        let (coordinates, speeds) = trajectory.state.split_at(mechanism.count(ComponentKind::Coordinate));
-        let start = State { time: trajectory.start, coordinates, speeds, inputs: &[] };
-        let failed = |error: hodograph_simulation::SimulationError| {
-            FitError::Motion(trajectory.name.clone(), error.into())
-        };
-        let mut simulation = Simulation::new(&mechanism, &start, options).map_err(failed)?;
-        let mut states = Vec::with_capacity(trajectory.times.len());
-        for &time in &trajectory.times {
-            simulation.advance_to(time).map_err(failed)?;
-            states.push([simulation.coordinates(), simulation.speeds()].concat());
-        }
+        let states = follow(&mechanism, &options, trajectory)
+            .map_err(|error| FitError::Motion(trajectory.name.clone(), error.into()))?;
         Ok(self.differences_of(trajectory, &states))
     }
 
@@ -279,7 +255,7 @@ impl Problem<'_> {
         Ok(Differences { differences: DVector::from_vec(all), by, without })
     }
 
-    /// Derivatives of the differences of a trajectory by differences of its motion, by rows.
+    /// Derivatives of the differences of a trajectory by finite differences, by rows.
     fn by_differences(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
         let mut columns = Vec::with_capacity(values.len());
         for place in 0..values.len() {
@@ -289,7 +265,7 @@ impl Problem<'_> {
                 moved[place] += h;
                 self.plain(&moved, trajectory)
             };
-            // At the end of a range there is one side only.
+            // At the end of the range of a value a one-sided difference is used.
             let (above, below) = (moved(h), moved(-h));
             let here = || self.plain(values, trajectory);
             let (above, below, width) = match (above, below) {
@@ -304,7 +280,7 @@ impl Problem<'_> {
         Ok((0..rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect())
     }
 
-    /// The method of Levenberg and Marquardt on these trajectories.
+    /// Runs the Levenberg-Marquardt method on these trajectories.
     fn minimise(
         &self,
         mut values: Vec<f64>,
@@ -319,8 +295,9 @@ impl Problem<'_> {
             let slope = here.by.transpose() * &here.differences;
             let square = here.differences.norm_squared();
             let mut next = None;
-            while damping < MOST {
-                // Relative to the curvature along each variable, so that their units do not matter.
+            while damping < MAX_DAMPING {
+                // Damping is relative to the curvature along each variable, so that their units do not
+                // matter.
                 let least = normal.diagonal().max() * f64::EPSILON;
                 let damped = DMatrix::from_fn(values.len(), values.len(), |row, column| {
                     let more = if row == column { damping * normal[(row, row)].max(least) } else { 0.0 };
@@ -329,7 +306,7 @@ impl Problem<'_> {
                 let step = damped.cholesky().map(|factor| factor.solve(&slope));
                 let trial: Option<Vec<f64>> = step
                     .map(|step| values.iter().zip(step.iter()).map(|(value, step)| value - step).collect());
-                // Values that are refused, or whose motions cannot be followed, ask for a shorter step.
+                // If the values are refused or their motions cannot be simulated, a shorter step is tried.
                 if let Some(trial) = trial
                     && let Ok(there) = self.evaluate(&trial, places)
                     && there.differences.norm_squared() < square
@@ -337,36 +314,29 @@ impl Problem<'_> {
                     next = Some((trial, there));
                     break;
                 }
-                damping *= MORE;
+                damping *= DAMPING_INCREASE;
             }
             let Some((trial, there)) = next else { break };
             let fallen = square - there.differences.norm_squared();
             (values, here) = (trial, there);
-            damping = (damping * LESS).max(f64::EPSILON);
+            damping = (damping * DAMPING_DECREASE).max(f64::EPSILON);
             made += 1;
-            if fallen <= ENOUGH * square {
+            if fallen <= MIN_DECREASE * square {
                 break;
             }
         }
         Ok((values, here, made))
     }
 
-    /// Standard deviations of the values over draws of the trajectories.
-    fn draws(&self, values: &[f64]) -> Result<Vec<f64>, FitError> {
+    /// Standard deviations of the values over bootstrap samples.
+    fn bootstrap_spread(&self, values: &[f64]) -> Result<Vec<f64>, FitError> {
         let count = self.task.trajectories.len();
         let mut state = self.task.seed;
-        // Steele, Lea and Flood's generator SplitMix64.
-        let mut random = || {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut word = state;
-            word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            word ^ (word >> 31)
-        };
+        let mut random = || next_random(&mut state);
         let mut sums = vec![(0.0, 0.0); values.len()];
         for _ in 0..self.task.bootstrap {
             let places: Vec<usize> = (0..count).map(|_| (random() % count as u64) as usize).collect();
-            let (found, ..) = self.minimise(values.to_vec(), &places, DRAWN_STEPS)?;
+            let (found, ..) = self.minimise(values.to_vec(), &places, BOOTSTRAP_STEPS)?;
             for (sum, (found, value)) in sums.iter_mut().zip(found.iter().zip(values)) {
                 let off = found - value;
                 *sum = (sum.0 + off, sum.1 + off * off);

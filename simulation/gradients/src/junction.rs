@@ -1,4 +1,4 @@
-//! Carries derivatives through the events at one time.
+//! Carries derivatives through events that happen at one time.
 //!
 //! Theory: docs/theory.md, section 19.2.
 
@@ -7,57 +7,60 @@ use hodograph_simulation::{CollisionRecord, Event, EventKind, Guard, SmoothPart}
 use nalgebra::Vector3;
 
 use crate::Reason;
-use crate::field::{At, Field, Together};
-use crate::modes::{Hold, Mode};
+use crate::field::{At, ContactTerms, Field};
+use crate::modes::{Mode, ModeKind};
 
-/// A gap closes with no speed where its rate is this part of the terms that make up the normal velocity.
+/// A gap closes without normal velocity if its rate is below this part of the terms of the normal velocity.
 const GRAZING: f64 = 1e-7;
-/// A force is about to vanish with its rate where that changes it by this part in all the time since the last event.
+/// A force vanishes together with its rate if the rate changes it by less than this part during the time
+/// since the last event.
 const TANGENT: f64 = 1e-7;
-/// Slip may have this part of its terms left across the direction in which it ends.
-const ACROSS: f64 = 1e-5;
-/// Speeds after a collision agree with those of the motion to this part of the greatest.
-const SAME: f64 = 1e-8;
-/// What does not change, relative to the terms that make it up.
-const NONE: f64 = 1e-12;
+/// The component of slip perpendicular to the direction in which slip ends may be at most this part of its
+/// terms.
+const TRANSVERSE_SLIP: f64 = 1e-5;
+/// The computed speeds after a collision must agree with those of the motion to this part of the greatest.
+const SPEED_AGREEMENT: f64 = 1e-8;
+/// A change below this part of its terms counts as zero.
+const NEGLIGIBLE: f64 = 1e-12;
 
-/// Why there is no derivative, and at which contact.
-pub(crate) type Lacking = (Option<usize>, Reason);
+/// The reason why there is no derivative, and its contact.
+pub(crate) type NonDifferentiable = (Option<usize>, Reason);
 
-/// What came of the events at one time.
-pub(crate) struct Passed {
+/// The derivatives at the events at one time.
+pub(crate) struct EventDerivatives {
     /// derivatives of the time of the events (k; the last is 0)
     pub time: Vec<f64>,
-    /// derivatives of the state at the events, which move, before them (n + p rows, k columns)
+    /// derivatives of the state at the (moving) time of the events, before them (n + p rows, k columns)
     pub before: Vec<f64>,
     /// the same after each event
     pub after: Vec<Vec<f64>>,
-    /// derivatives of the state at the same time, after the events
+    /// derivatives of the state at the fixed time, after the events
     pub by: Vec<f64>,
 }
 
-/// The end of a part, with this state.
+/// The state at the end of a part, with its derivatives.
 fn at_end<'a>(part: &'a SmoothPart, state: &'a [f64], by: &'a [f64], time_by: &'a [f64]) -> At<'a> {
     At { time: part.end, state, by, time_by, inputs: &part.inputs }
 }
 
-/// The start of a part.
+/// The state at the start of a part, with its derivatives.
 pub(crate) fn at_start<'a>(part: &'a SmoothPart, by: &'a [f64]) -> At<'a> {
     At { time: part.start, state: &part.first, by, time_by: &[], inputs: &part.inputs }
 }
 
-/// The modes through a part.
+/// The modes during a part.
 pub(crate) fn modes(part: &SmoothPart) -> Vec<Mode> {
     let mode = |closed: &hodograph_simulation::ClosedPart| Mode {
         contact: closed.contact,
-        hold: closed.slides.map_or(Hold::Stick, Hold::Slide),
+        kind: closed.slides.map_or(ModeKind::Stick, ModeKind::Slide),
     };
     part.closed.iter().map(mode).collect()
 }
 
 impl Field<'_> {
-    /// The events at the end of a part. `by` are derivatives of the state just before them, at the same time; `modes` are
-    /// those through the part; `next` is the part that follows; `since` is the time of the events before.
+    /// Carries derivatives through the events at the end of a part. `by` are the derivatives of the state
+    /// just before them, at the fixed time; `modes` are the modes during the part; `next` is the following
+    /// part; `since` is the time of the previous events.
     pub fn pass(
         &self,
         (part, next): (&SmoothPart, &SmoothPart),
@@ -65,7 +68,7 @@ impl Field<'_> {
         by: &[f64],
         events: &[Event],
         since: f64,
-    ) -> Result<Passed, Lacking> {
+    ) -> Result<EventDerivatives, NonDifferentiable> {
         let k = self.k;
         for event in events {
             let selection = event.kind.selection();
@@ -73,8 +76,8 @@ impl Field<'_> {
                 return Err((event.contact, Reason::SeveralModes));
             }
         }
-        let before = self.moving(modes, &at_end(part, &part.last, by, &[])).map_err(|why| (None, why))?;
-        // Along the last direction time goes on.
+        let before = self.mode_rates(modes, &at_end(part, &part.last, by, &[])).map_err(|why| (None, why))?;
+        // The last direction is time.
         let mut flow = vec![0.0; k];
         flow[k - 1] = 1.0;
         let mut along = by.to_vec();
@@ -93,7 +96,7 @@ impl Field<'_> {
             }
         }
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
-            self.stops(stopped, &at_end(part, &part.last, &there, &time), &sizes)?;
+            self.check_stop(stopped, &at_end(part, &part.last, &there, &time), &sizes)?;
         }
         let (mut now, mut after) = (there.clone(), Vec::with_capacity(events.len()));
         self.check_impacts(part, next, events)?;
@@ -108,24 +111,30 @@ impl Field<'_> {
             after.push(now.clone());
         }
         let modes = self::modes(next);
-        let going = self.moving(&modes, &at_start(next, &now)).map_err(|why| (None, why))?;
+        let going = self.mode_rates(&modes, &at_start(next, &now)).map_err(|why| (None, why))?;
         for ((row, size), rate) in now.chunks_exact_mut(k).zip(sizes.chunks_exact_mut(k)).zip(&going.rates) {
             for ((by, size), time) in row.iter_mut().zip(size).zip(&time) {
                 *by -= rate * time;
                 *size += (rate * time).abs();
             }
         }
-        let apart = self.moved_apart(&modes, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
+        let apart = self.separation(&modes, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
         if let Some((contact, _, left)) = apart
-            && left > ACROSS
+            && left > TRANSVERSE_SLIP
         {
             return Err((Some(contact), Reason::Inaccurate(left)));
         }
-        Ok(Passed { time, before: there, after, by: now })
+        Ok(EventDerivatives { time, before: there, after, by: now })
     }
 
-    /// How the function that ended a part changes along the directions; the last one is its rate.
-    fn guard(&self, part: &SmoothPart, modes: &[Mode], at: &At<'_>, since: f64) -> Result<Vec<f64>, Lacking> {
+    /// The derivatives of the function that ended a part along the directions; the last one is its rate.
+    fn guard(
+        &self,
+        part: &SmoothPart,
+        modes: &[Mode],
+        at: &At<'_>,
+        since: f64,
+    ) -> Result<Vec<f64>, NonDifferentiable> {
         let last = self.k - 1;
         let place = |contact: usize| {
             let found = modes.iter().position(|mode| mode.contact == contact);
@@ -135,22 +144,22 @@ impl Field<'_> {
         match part.ended_by.as_ref().ok_or((None, Reason::ModesChanged))? {
             Guard::Gap(contact) => {
                 let (_, by) = self.gap(*contact, at).map_err(state)?;
-                let together = self.together(&[*contact], at).map_err(state)?;
-                let size = together.velocity_size(0, 0, &at.state[self.n..]);
+                let contact_terms = self.contact_terms(&[*contact], at).map_err(state)?;
+                let size = contact_terms.velocity_size(0, 0, &at.state[self.n..]);
                 if by[last] >= -GRAZING * size {
                     return Err((Some(*contact), Reason::Grazing));
                 }
                 Ok(by)
             }
             Guard::NormalForce(contact) => {
-                let moving = self.moving(modes, at).map_err(|why| (Some(*contact), why))?;
-                let size = moving.forces.iter().map(|force| force[0].value.abs()).fold(0.0, f64::max);
-                let by = moving.forces[place(*contact)?][0].by.clone();
+                let mode_rates = self.mode_rates(modes, at).map_err(|why| (Some(*contact), why))?;
+                let size = mode_rates.forces.iter().map(|force| force[0].value.abs()).fold(0.0, f64::max);
+                let by = mode_rates.forces[place(*contact)?][0].by.clone();
                 tangency(*contact, by, size, part.end - since)
             }
             Guard::Friction(contact) => {
-                let moving = self.moving(modes, at).map_err(|why| (Some(*contact), why))?;
-                let [normal, first, second] = &moving.forces[place(*contact)?];
+                let mode_rates = self.mode_rates(modes, at).map_err(|why| (Some(*contact), why))?;
+                let [normal, first, second] = &mode_rates.forces[place(*contact)?];
                 let mu = self.surface(*contact).ok_or((Some(*contact), Reason::ModesChanged))?.mu;
                 // (mu lambda_n)^2 - lambda_t^2 - lambda_s^2
                 let by: Vec<f64> = (0..self.k)
@@ -167,13 +176,14 @@ impl Field<'_> {
             Guard::Slip(stopped) => {
                 let [contact] = stopped[..] else { return Err((None, Reason::AtOnce)) };
                 let place = place(contact)?;
-                let moving = self.moving(modes, at).map_err(|why| (Some(contact), why))?;
-                let Some(along) = moving.directions[place] else {
+                let mode_rates = self.mode_rates(modes, at).map_err(|why| (Some(contact), why))?;
+                let Some(along) = mode_rates.directions[place] else {
                     return Err((Some(contact), Reason::ModesChanged));
                 };
-                let together = &moving.together;
-                let part =
-                    |axis: usize, d: usize| along[axis] * together.by(together.velocity(place, 1 + axis))[d];
+                let contact_terms = &mode_rates.contact_terms;
+                let part = |axis: usize, d: usize| {
+                    along[axis] * contact_terms.by(contact_terms.velocity(place, 1 + axis))[d]
+                };
                 let by: Vec<f64> = (0..self.k).map(|d| part(0, d) + part(1, d)).collect();
                 if by[last] >= 0.0 {
                     return Err((Some(contact), Reason::Tangency));
@@ -185,13 +195,14 @@ impl Field<'_> {
         }
     }
 
-    /// Slip that has ended has no part across the direction in which it ended.
-    fn stops(&self, stopped: &[usize], at: &At<'_>, sizes: &[f64]) -> Result<(), Lacking> {
+    /// Checks that slip ends in its own direction: its perpendicular component must vanish.
+    fn check_stop(&self, stopped: &[usize], at: &At<'_>, sizes: &[f64]) -> Result<(), NonDifferentiable> {
         for &contact in stopped {
-            let together = self.together(&[contact], at).map_err(|error| (None, Reason::State(error)))?;
+            let contact_terms =
+                self.contact_terms(&[contact], at).map_err(|error| (None, Reason::State(error)))?;
             for axis in 1..3 {
-                for (d, left) in together.by(together.velocity(0, axis)).iter().enumerate() {
-                    if left.abs() > ACROSS * self.terms(&together, (0, axis), (at, sizes), d) {
+                for (d, left) in contact_terms.by(contact_terms.velocity(0, axis)).iter().enumerate() {
+                    if left.abs() > TRANSVERSE_SLIP * self.terms(&contact_terms, (0, axis), (at, sizes), d) {
                         return Err((Some(contact), Reason::SlipTurns));
                     }
                 }
@@ -200,27 +211,27 @@ impl Field<'_> {
         Ok(())
     }
 
-    /// The size of the terms that make up the derivative of the velocity of a contact along a direction; `sizes` are those
-    /// of the derivatives of the state.
+    /// The sum of the magnitudes of the terms in the derivative of a contact velocity along a direction;
+    /// `sizes` are those of the derivatives of the state.
     fn terms(
         &self,
-        together: &Together,
+        contact_terms: &ContactTerms,
         (place, axis): (usize, usize),
         (at, sizes): (&At<'_>, &[f64]),
         d: usize,
     ) -> f64 {
         let (n, p, k) = (self.n, self.p, self.k);
         let by = |index: usize| sizes[index * k + d];
-        let partial = |speed: usize| together.value(together.partial(place, axis, speed)).abs();
+        let partial = |speed: usize| contact_terms.value(contact_terms.partial(place, axis, speed)).abs();
         let own: f64 = (0..p).map(|speed| partial(speed) * by(n + speed)).sum();
         let turning = (0..n).map(by).fold(0.0, f64::max);
-        let speed: f64 = (0..3).map(|axis| together.velocity_size(place, axis, &at.state[n..])).sum();
+        let speed: f64 = (0..3).map(|axis| contact_terms.velocity_size(place, axis, &at.state[n..])).sum();
         own + turning * speed
     }
 
-    /// By how much the closed contacts part, and those that stick slip, along the directions: the contact and the direction
-    /// with the greatest part of the terms that make it up. Gaps are looked at, too.
-    pub fn moved_apart(
+    /// The relative rates at which closed contacts separate, and sticking ones slip, along the directions:
+    /// the contact and the direction with the greatest rate relative to its terms. Gaps are included.
+    pub fn separation(
         &self,
         modes: &[Mode],
         at: &At<'_>,
@@ -230,7 +241,7 @@ impl Field<'_> {
         if contacts.is_empty() {
             return Ok(None);
         }
-        let together = self.together(&contacts, at).map_err(Reason::State)?;
+        let contact_terms = self.contact_terms(&contacts, at).map_err(Reason::State)?;
         let mut worst: Option<(usize, usize, f64)> = None;
         let mut see = |contact: usize, d: usize, left: f64, size: f64| {
             let part = if left == 0.0 { 0.0 } else { left.abs() / (size + f64::MIN_POSITIVE) };
@@ -239,10 +250,10 @@ impl Field<'_> {
             }
         };
         for (place, mode) in modes.iter().enumerate() {
-            let axes = if mode.hold == Hold::Stick { 3 } else { 1 };
+            let axes = if mode.kind == ModeKind::Stick { 3 } else { 1 };
             for axis in 0..axes {
-                for (d, &left) in together.by(together.velocity(place, axis)).iter().enumerate() {
-                    see(mode.contact, d, left, self.terms(&together, (place, axis), (at, sizes), d));
+                for (d, &left) in contact_terms.by(contact_terms.velocity(place, axis)).iter().enumerate() {
+                    see(mode.contact, d, left, self.terms(&contact_terms, (place, axis), (at, sizes), d));
                 }
             }
             let (_, gap) = self.gap(mode.contact, at).map_err(Reason::State)?;
@@ -254,8 +265,14 @@ impl Field<'_> {
         Ok(worst)
     }
 
-    /// Collisions that are no function of the state before, smooth in it.
-    fn check_impacts(&self, part: &SmoothPart, next: &SmoothPart, events: &[Event]) -> Result<(), Lacking> {
+    /// Checks that the impacts are collisions of single contacts, which are smooth functions of the state
+    /// before.
+    fn check_impacts(
+        &self,
+        part: &SmoothPart,
+        next: &SmoothPart,
+        events: &[Event],
+    ) -> Result<(), NonDifferentiable> {
         let closed = |contact: usize| part.closed.iter().any(|closed| closed.contact == contact);
         let mut opened: Vec<usize> = Vec::new();
         for event in events {
@@ -291,41 +308,41 @@ impl Field<'_> {
         at: &At<'_>,
     ) -> Result<Vec<f64>, Reason> {
         let (n, p, k) = (self.n, self.p, self.k);
-        let together = self.together(&[contact], at).map_err(Reason::State)?;
-        // The inputs of the solver: approach, reduced matrix, mu, e.
+        let contact_terms = self.contact_terms(&[contact], at).map_err(Reason::State)?;
+        // The arguments of the solver: approach, reduced matrix, mu, e.
         let axes = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
         let mut matrix = [0.0; 6];
         let mut by: Vec<[f64; 11]> = vec![[0.0; 11]; k];
         for (entry, (row, column)) in axes.into_iter().enumerate() {
             for speed in 0..p {
-                let (v, r) = (together.partial(0, row, speed), together.response(0, column, speed));
-                matrix[entry] += together.value(v) * together.value(r);
+                let (v, r) = (contact_terms.partial(0, row, speed), contact_terms.response(0, column, speed));
+                matrix[entry] += contact_terms.value(v) * contact_terms.value(r);
                 for (d, by) in by.iter_mut().enumerate() {
-                    by[3 + entry] +=
-                        together.by(v)[d] * together.value(r) + together.value(v) * together.by(r)[d];
+                    by[3 + entry] += contact_terms.by(v)[d] * contact_terms.value(r)
+                        + contact_terms.value(v) * contact_terms.by(r)[d];
                 }
             }
         }
         for (d, by) in by.iter_mut().enumerate() {
             for (axis, by) in by.iter_mut().take(3).enumerate() {
-                *by = together.by(together.velocity(0, axis))[d];
+                *by = contact_terms.by(contact_terms.velocity(0, axis))[d];
             }
             let variable = self.by.get(d);
             by[9] = if variable.is_some_and(|by| by.is_friction_of(contact)) { 1.0 } else { 0.0 };
             by[10] = if variable.is_some_and(|by| by.is_restitution_of(contact)) { 1.0 } else { 0.0 };
         }
-        let approach = Vector3::from_fn(|axis, _| together.value(together.velocity(0, axis)));
+        let approach = Vector3::from_fn(|axis, _| contact_terms.value(contact_terms.velocity(0, axis)));
         let surface = self.surface(contact).ok_or(Reason::ModesChanged)?;
-        let response = |speed: usize, axis: usize| together.response(0, axis, speed);
+        let response = |speed: usize, axis: usize| contact_terms.response(0, axis, speed);
         let after = |hit: &ImpactDerivative<f64>| -> Vec<f64> {
             let push = |speed: usize| {
                 (0..3)
-                    .map(|axis| together.value(response(speed, axis)) * hit.impact.impulse[axis])
+                    .map(|axis| contact_terms.value(response(speed, axis)) * hit.impact.impulse[axis])
                     .sum::<f64>()
             };
             (0..p).map(|speed| at.state[n + speed] + push(speed)).collect()
         };
-        // The last bounce, and those that have faded, are without restitution.
+        // The last bounce of a sequence has no restitution.
         let plastic = Surface { e: 0.0, ..surface };
         let surfaces = if struck.last_bounce { vec![plastic] } else { vec![surface, plastic] };
         let greatest =
@@ -335,7 +352,7 @@ impl Field<'_> {
             let Ok(hit) = derivative(&ReducedMatrix::from(matrix), &approach, &surface) else { continue };
             let off = after(&hit).iter().zip(&event.speeds).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             difference = difference.min(off / greatest);
-            if off > SAME * greatest {
+            if off > SPEED_AGREEMENT * greatest {
                 continue;
             }
             self.smooth(contact, &hit, &by, &approach, surface.mu)?;
@@ -347,8 +364,8 @@ impl Field<'_> {
                 for speed in 0..p {
                     let change = |axis: usize| {
                         let index = response(speed, axis);
-                        together.by(index)[d] * hit.impact.impulse[axis]
-                            + together.value(index) * impulse[axis]
+                        contact_terms.by(index)[d] * hit.impact.impulse[axis]
+                            + contact_terms.value(index) * impulse[axis]
                     };
                     speeds[speed * k + d] += change(0) + change(1) + change(2);
                 }
@@ -371,19 +388,20 @@ impl Field<'_> {
         if why != NonSmoothness::NoSlip {
             return Err(Reason::Impact(why));
         }
-        // Without slip there is a derivative along what makes none, and where there is no friction.
+        // Without slip there is a derivative along directions that cause none, and without friction.
         let by_mu = self.by.iter().any(|by| by.is_friction_of(contact));
         let slips = |by: &[f64; 11]| {
             let size = by[0].abs() + approach.x.abs();
-            by[1].abs().max(by[2].abs()) > NONE * size
+            by[1].abs().max(by[2].abs()) > NEGLIGIBLE * size
         };
         let smooth = if mu == 0.0 { !by_mu } else { !by.iter().any(slips) };
         if smooth { Ok(()) } else { Err(Reason::Impact(why)) }
     }
 }
 
-/// The derivatives of a function that ends a mode, of this size and over this time; `Tangency` where its rate vanishes, too.
-fn tangency(contact: usize, by: Vec<f64>, size: f64, time: f64) -> Result<Vec<f64>, Lacking> {
+/// The derivatives of a function that ends a mode, given its scale and duration; the error `Tangency` if its
+/// rate vanishes.
+fn tangency(contact: usize, by: Vec<f64>, size: f64, time: f64) -> Result<Vec<f64>, NonDifferentiable> {
     let rate = by.last().copied().unwrap_or(0.0);
     if rate.abs() * time > TANGENT * size { Ok(by) } else { Err((Some(contact), Reason::Tangency)) }
 }

@@ -1,10 +1,10 @@
-//! Derivatives of motions: of the state at any time, of the times of events and of the states there, with respect to the
-//! start state, parameters of the model, held inputs, mu and e.
+//! Derivatives of motions: of the state at any time, and of the times of events and the states there, with
+//! respect to the start state, parameters of the model, constant inputs, mu and e.
 //!
-//! [`differentiate`] follows a motion with [`Simulation`](hodograph_simulation::Simulation), then goes through its smooth
-//! parts once more and carries the derivatives along: variational equations between events, saltation at events. There is
-//! no step of differences anywhere. Where the motion is not differentiable the derivatives are `None` from then on, with
-//! the reason.
+//! [`differentiate`] simulates a motion with [`Simulation`](hodograph_simulation::Simulation), then
+//! integrates its smooth parts again together with derivatives: variational equations between events,
+//! saltation at events. No finite differences are used. Where the motion is not differentiable, the
+//! derivatives are `None` from then on, with the reason.
 //!
 //! ```no_run
 //! use hodograph::State;
@@ -28,7 +28,9 @@
 //!
 //! [`fit()`] fits parameters, mu and e to measured motions.
 //!
-//! Theory: docs/theory.md, sections 19 to 21.
+//! [`validation`] compares predictions with measured motions, and [`statistics`] sums up their errors.
+//!
+//! Theory: docs/theory.md, sections 19 to 22.
 
 mod branch;
 mod by;
@@ -39,9 +41,15 @@ mod junction;
 mod modes;
 mod motion;
 mod orbit;
+mod random;
+pub mod statistics;
+mod trajectory;
+pub mod validation;
 
 pub use branch::{Branch, BranchPoint, Change, ChangeKind, follow_branch};
 pub use by::{By, Reason, Undefined};
-pub use fit::{Fit, FitError, FitTask, Trajectory, fit};
+pub use family::with_values;
+pub use fit::{Fit, FitError, FitTask, fit};
 pub use motion::{EventGradient, GradientError, MotionGradient, Sample, differentiate};
 pub use orbit::{Orbit, OrbitError, Periodic, Return, find_orbit};
+pub use trajectory::Trajectory;

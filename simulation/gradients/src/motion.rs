@@ -1,4 +1,4 @@
-//! Follows a motion, and carries derivatives through its smooth parts and events.
+//! Simulates a motion, and carries derivatives through its smooth parts and events.
 //!
 //! Theory: docs/theory.md, section 19.
 
@@ -14,28 +14,29 @@ use hodograph_simulation::{
 use nalgebra::{DMatrix, DVector};
 
 use crate::field::{At, Field};
-use crate::junction::{Lacking, Passed, at_start, modes};
-use crate::modes::{Hold, Mode};
+use crate::junction::{EventDerivatives, NonDifferentiable, at_start, modes};
+use crate::modes::{Mode, ModeKind};
 use crate::{By, Reason, Undefined};
 
-/// What is integrated anew agrees with the motion to this part of the state.
-const SAME: f64 = 1e-6;
-/// At the start closed contacts may part along a direction by this part of the terms that make it up.
-const APART: f64 = 1e-9;
-/// Steps of the integration within one step of the motion.
-const STEPS: usize = 20_000;
+/// The states of the repeated integration agree with those of the motion to this part of their size.
+const STATE_AGREEMENT: f64 = 1e-6;
+/// At the start, the rate at which closed contacts separate along a direction may be at most this part of its
+/// terms.
+const MAX_SEPARATION: f64 = 1e-9;
+/// Largest number of integration steps within one step of the motion.
+const MAX_STEPS: usize = 20_000;
 
-/// A motion with its derivatives. Matrices have a row per coordinate and independent speed, in the units of the model, and
-/// a column per variable.
+/// A motion with its derivatives. Matrices have a row per coordinate and independent speed, in the units of
+/// the model, and a column per variable.
 #[derive(Clone, Debug)]
 pub struct MotionGradient {
     /// the variables
     pub by: Vec<By>,
-    /// the events, up to the last time asked for
+    /// the events up to the last of the given times
     pub events: Vec<EventGradient>,
-    /// the states at the times asked for
+    /// the states at the given times
     pub samples: Vec<Sample>,
-    /// why there are no derivatives from a time on, if there are none
+    /// the time and the reason if derivatives end
     pub undefined: Option<Undefined>,
 }
 
@@ -46,19 +47,19 @@ pub struct Sample {
     pub time: f64,
     /// coordinates and independent speeds: those of the simulation, whether or not there are derivatives
     pub state: Vec<f64>,
-    /// their derivatives at this time; `None` where the motion is not differentiable
+    /// their derivatives at this time; `None` if the motion is not differentiable
     pub derivative: Option<DMatrix<f64>>,
 }
 
-/// An event with derivatives. They are those of the event as it moves: of the time when it happens, and of the state there.
+/// An event with derivatives: of its time, and of the state at this time, which changes with the variables.
 #[derive(Clone, Debug)]
 pub struct EventGradient {
     /// the event
     pub event: Event,
-    /// derivatives of its time, s over the unit of the variable; `None` where the motion is not differentiable up to there,
-    /// or where the time is only told (the end of bounces, rest)
+    /// derivatives of its time, s per unit of the variable; `None` if the motion is not differentiable up to
+    /// there, or if the time is only reported (the end of bounces, rest)
     pub time: Option<DVector<f64>>,
-    /// derivatives of the state at the event, before all that happens at its time
+    /// derivatives of the state at the event, before all events at this time
     pub before: Option<DMatrix<f64>>,
     /// derivatives of the state at the event, after it
     pub after: Option<DMatrix<f64>>,
@@ -68,11 +69,11 @@ pub struct EventGradient {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum GradientError {
-    /// The motion itself cannot be followed.
+    /// The motion itself fails.
     Simulation(SimulationError),
-    /// It has something through which derivatives are not carried: what, in words.
+    /// The motion has a property with which derivatives are not supported, in words.
     NotSupported(String),
-    /// The times are not finite, do not rise, or begin before the start; or a variable does not exist.
+    /// The times are not finite, do not increase, or begin before the start; or a variable does not exist.
     BadRequest(String),
 }
 
@@ -94,13 +95,15 @@ impl From<SimulationError> for GradientError {
     }
 }
 
-/// Follows the motion from a start state to the last of the `times`, which rise, and differentiates it by each of `by`.
+/// Simulates the motion from a start state to the last of the `times`, which increase, and differentiates it
+/// with respect to each of `by`.
 ///
-/// The components of a quaternion of the start state are taken as independent numbers that are divided by its length.
+/// The components of a quaternion of the start state are treated as independent numbers, which are then
+/// normalised.
 ///
 /// # Errors
 ///
-/// [`GradientError`]. A motion that is not differentiable is no error: [`MotionGradient::undefined`].
+/// [`GradientError`]. A motion without derivatives is not an error: see [`MotionGradient::undefined`].
 pub fn differentiate(
     mechanism: &InterpretedMechanism,
     start: &State<'_>,
@@ -108,20 +111,21 @@ pub fn differentiate(
     by: &[By],
     times: &[f64],
 ) -> Result<MotionGradient, GradientError> {
-    carried(mechanism, start, options, by, times, Start::Free)
+    differentiate_from(mechanism, start, options, by, times, Start::Free)
 }
 
-/// How a start state that is in contact changes with its variables.
+/// How the derivatives of a start state with closed contacts are formed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
-    /// As they say; a variable that leaves the contact has no derivative.
+    /// As given; a variable whose change opens a contact has no derivative.
     Free,
-    /// Speeds follow so that contacts which are closed stay so, and do not begin to slip: by the least change of kinetic energy.
+    /// The speeds are projected, with the least change of kinetic energy, so that closed contacts stay closed
+    /// and do not begin to slip.
     Held,
 }
 
-/// As [`differentiate`].
-pub(crate) fn carried(
+/// Like [`differentiate`].
+pub(crate) fn differentiate_from(
     mechanism: &InterpretedMechanism,
     start: &State<'_>,
     options: Options,
@@ -150,15 +154,15 @@ pub(crate) fn carried(
     }
     events.retain(|event| event.time <= end);
     let field = Field::new(mechanism, by, &surfaces);
-    let mut carried = Carried {
+    let mut propagation = Propagation {
         by: seeds(&field, mechanism, start),
         field,
         tolerances,
         since: start.time,
         motion: MotionGradient { by: by.to_vec(), events: Vec::new(), samples, undefined: None },
     };
-    carried.follow((start.time, how), &parts, events, end);
-    Ok(carried.motion)
+    propagation.follow((start.time, how), &parts, events, end);
+    Ok(propagation.motion)
 }
 
 fn check_request(
@@ -195,7 +199,7 @@ fn check_request(
     Ok(())
 }
 
-/// The surfaces of the contacts, where derivatives can be carried through all of them.
+/// The surfaces of the contacts, if all of them support derivatives.
 fn supported(
     mechanism: &InterpretedMechanism,
     start: &State<'_>,
@@ -260,18 +264,18 @@ fn seeds(field: &Field<'_>, mechanism: &InterpretedMechanism, start: &State<'_>)
     by
 }
 
-/// Derivatives on their way through a motion.
-struct Carried<'m> {
+/// The state of the propagation of derivatives through a motion.
+struct Propagation<'m> {
     field: Field<'m>,
     tolerances: Tolerances,
-    /// of the state: n + p rows, k columns
+    /// derivatives of the state: n + p rows, k columns
     by: Vec<f64>,
-    /// the time of the events before, s
+    /// time of the previous events, s
     since: f64,
     motion: MotionGradient,
 }
 
-impl Carried<'_> {
+impl Propagation<'_> {
     fn follow(&mut self, (start, how): (f64, Start), parts: &[SmoothPart], events: Vec<Event>, end: f64) {
         let mut events = events.into_iter().peekable();
         let at_once = |time: f64| move |event: &Event| event.time <= time;
@@ -308,8 +312,8 @@ impl Carried<'_> {
         }
     }
 
-    /// Looks at the start: contacts must stay closed along all directions.
-    fn begin(&mut self, how: Start, parts: &[SmoothPart], events: &[Event]) -> Result<(), Lacking> {
+    /// Checks the start: closed contacts must stay closed along all directions.
+    fn begin(&mut self, how: Start, parts: &[SmoothPart], events: &[Event]) -> Result<(), NonDifferentiable> {
         let contacts = self.field.mechanism.count(ComponentKind::Contact);
         if parts.iter().flat_map(|part| &part.closed).any(|closed| closed.contact >= contacts) {
             return Err((None, Reason::ModesChanged));
@@ -329,16 +333,16 @@ impl Carried<'_> {
         let Some(first) = parts.first() else { return Ok(()) };
         let mut sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
         if how == Start::Held {
-            let held = self.field.hold(&modes(first), &at_start(first, &self.by));
+            let held = self.field.project(&modes(first), &at_start(first, &self.by));
             self.by = held.map_err(|why| (None, why))?;
             sizes.iter_mut().zip(&self.by).for_each(|(size, by)| *size += by.abs());
         }
         match self
             .field
-            .moved_apart(&modes(first), &at_start(first, &self.by), &sizes)
+            .separation(&modes(first), &at_start(first, &self.by), &sizes)
             .map_err(|why| (None, why))?
         {
-            Some((contact, direction, left)) if left > APART => {
+            Some((contact, direction, left)) if left > MAX_SEPARATION => {
                 let by = self.field.by.get(direction).copied();
                 Err((Some(contact), by.map_or(Reason::ModesChanged, Reason::StartInContact)))
             }
@@ -346,7 +350,7 @@ impl Carried<'_> {
         }
     }
 
-    fn lacks(&mut self, time: f64, (contact, reason): Lacking) {
+    fn lacks(&mut self, time: f64, (contact, reason): NonDifferentiable) {
         self.motion.undefined.get_or_insert(Undefined { time, contact, reason });
     }
 
@@ -355,7 +359,8 @@ impl Carried<'_> {
         DMatrix::from_fn(by.len() / k, k - 1, |row, column| by[row * k + column])
     }
 
-    /// Gives the samples up to a time their derivatives, from that with the number `from` on; the number of the next one.
+    /// Copies derivatives to the samples up to a time, from the sample with the index `from` on; returns the
+    /// index of the next sample.
     fn sample(&mut self, from: usize, time: f64) -> usize {
         let due = self.motion.samples[from..].iter().take_while(|sample| sample.time <= time).count();
         if self.motion.undefined.is_none() {
@@ -367,8 +372,8 @@ impl Carried<'_> {
         from + due
     }
 
-    /// Carries the derivatives through a part, and gives them to the samples within it; or says from when on it cannot. The
-    /// part is integrated anew with them, and must agree with the motion.
+    /// Carries the derivatives through a part and to the samples within it; the error says from which time on
+    /// this is impossible. The part is integrated again with derivatives, and must agree with the motion.
     fn through(&mut self, part: &SmoothPart, samples: Range<usize>, end: f64) -> Result<(), (f64, Reason)> {
         let modes = modes(part);
         let count = part.first.len();
@@ -390,7 +395,7 @@ impl Carried<'_> {
         Ok(())
     }
 
-    /// State and derivatives from a time to another within a part.
+    /// State and derivatives, carried from one time to another within a part.
     fn carry(
         &self,
         part: &SmoothPart,
@@ -404,7 +409,7 @@ impl Carried<'_> {
         }
     }
 
-    /// The variational equations from a time to another.
+    /// Integrates the variational equations from one time to another.
     fn integrate(
         &self,
         part: &SmoothPart,
@@ -417,10 +422,10 @@ impl Carried<'_> {
         let mut rates = |time: f64, y: &[f64], rates: &mut [f64]| {
             let (state, by) = y.split_at(count);
             let at = At { time, state, by, time_by: &[], inputs: &part.inputs };
-            match self.field.moving(modes, &at) {
-                Ok(moving) => {
-                    rates[..count].copy_from_slice(&moving.rates);
-                    rates[count..].copy_from_slice(&moving.rates_by);
+            match self.field.mode_rates(modes, &at) {
+                Ok(mode_rates) => {
+                    rates[..count].copy_from_slice(&mode_rates.rates);
+                    rates[count..].copy_from_slice(&mode_rates.rates_by);
                 }
                 Err(why) => {
                     failed.get_or_insert(why);
@@ -429,7 +434,7 @@ impl Carried<'_> {
             }
         };
         let (mut now, mut h) = (from, to - from);
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             if now >= to {
                 return Ok(());
             }
@@ -445,16 +450,17 @@ impl Carried<'_> {
     /// The last nanoseconds of slip, along a straight line.
     fn straight(&self, part: &SmoothPart, modes: &[Mode], time: f64, y: &mut [f64]) -> Result<(), Reason> {
         let count = part.first.len();
-        let moving = self.field.moving(modes, &at_start(part, &y[count..]))?;
-        let rates = moving.rates.iter().chain(&moving.rates_by);
+        let mode_rates = self.field.mode_rates(modes, &at_start(part, &y[count..]))?;
+        let rates = mode_rates.rates.iter().chain(&mode_rates.rates_by);
         let rates: Vec<f64> = rates.copied().collect();
         y.iter_mut().zip(rates).for_each(|(value, rate)| *value += time * rate);
         Ok(())
     }
 
-    /// The events at the end of a part.
+    /// Carries the derivatives through the events at the end of a part.
     fn at_end(&mut self, part: &SmoothPart, next: Option<&SmoothPart>, events: Vec<Event>) {
-        // Where a normal force or the friction comes to its limit, and all contacts go on as they were, nothing happens.
+        // If a normal force or the friction reaches its limit, but all contacts keep their modes, nothing
+        // changes.
         let goes_on = |next: &SmoothPart| events.is_empty() && kinds(part) == kinds(next);
         let guard = part.ended_by.as_ref().filter(|guard| {
             let of_modes = matches!(guard, Guard::NormalForce(_) | Guard::Friction(_));
@@ -464,7 +470,7 @@ impl Carried<'_> {
             (true, ..) | (_, Some(Guard::Function(_)), _) => None,
             (_, _, None) => None,
             (false, None, Some(next)) => {
-                // Only what is told of the past may happen here.
+                // Only events that report earlier changes may occur here.
                 if kinds(part) != kinds(next) {
                     self.lacks(part.end, (None, Reason::ModesChanged));
                 }
@@ -483,7 +489,7 @@ impl Carried<'_> {
             },
         };
         for (index, event) in events.into_iter().enumerate() {
-            let of = |passed: &Passed| EventGradient {
+            let of = |passed: &EventDerivatives| EventGradient {
                 event: event.clone(),
                 time: Some(DVector::from_column_slice(&passed.time[..self.field.k - 1])),
                 before: Some(self.matrix(&passed.before)),
@@ -495,15 +501,20 @@ impl Carried<'_> {
         }
     }
 
-    fn pass(&self, part: &SmoothPart, next: &SmoothPart, events: &[Event]) -> Result<Passed, Lacking> {
+    fn pass(
+        &self,
+        part: &SmoothPart,
+        next: &SmoothPart,
+        events: &[Event],
+    ) -> Result<EventDerivatives, NonDifferentiable> {
         let mut modes = modes(part);
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
-            // Slip is zero at its end: it has the direction of a moment before.
+            // Slip is zero at its end, so it takes the direction shortly before.
             let at = at_start(part, &self.by);
-            let moving = self.field.moving(&modes, &at).map_err(|why| (None, why))?;
-            for (mode, direction) in modes.iter_mut().zip(moving.directions) {
+            let mode_rates = self.field.mode_rates(&modes, &at).map_err(|why| (None, why))?;
+            for (mode, direction) in modes.iter_mut().zip(mode_rates.directions) {
                 if let (true, Some(along)) = (stopped.contains(&mode.contact), direction) {
-                    mode.hold = Hold::Along(along);
+                    mode.kind = ModeKind::Along(along);
                 }
             }
         }
@@ -511,12 +522,12 @@ impl Carried<'_> {
     }
 }
 
-/// Whether a state that was integrated anew is that of the motion.
+/// Whether a state of the repeated integration agrees with that of the motion.
 fn agree(found: &[f64], expected: &[f64]) -> Result<(), Reason> {
     let size = expected.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
     let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
-    // what is no number agrees with nothing
-    if off <= SAME && found.iter().all(|value| value.is_finite()) {
+    // NaN agrees with nothing.
+    if off <= STATE_AGREEMENT && found.iter().all(|value| value.is_finite()) {
         Ok(())
     } else {
         Err(Reason::Inaccurate(off))

@@ -1,4 +1,4 @@
-//! Finds periodic motions: states from which a motion returns to itself, with their multipliers.
+//! Finds periodic motions: states to which a motion returns, with their multipliers.
 //!
 //! Theory: docs/theory.md, section 20.
 
@@ -9,59 +9,66 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, EventKind, Options, Progress, Simulation};
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::motion::{Start, carried};
+use crate::motion::{Start, differentiate_from};
 use crate::{By, GradientError, Undefined};
 
-/// When a motion has returned.
+/// The end of a period.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Return {
-    /// After this time, s: motions that are driven in time.
+    /// After this time, s: for motions that are driven in time.
     After(f64),
-    /// Just after an event, the `count`-th of this name (`collision`, `stick`, ..) at this contact, or at any.
+    /// Just after an event: the `count`-th of this name (`collision`, `stick`, ..) at this contact, or at
+    /// any.
     At {
         /// its name: [`EventKind::name`]
         event: String,
-        /// number of the contact
+        /// index of the contact
         contact: Option<usize>,
-        /// how many of them make a period, at least 1
+        /// number of such events in a period, at least 1
         count: usize,
     },
 }
 
-/// What a periodic motion is.
+impl Return {
+    /// The names of the events that may end a period: those whose times have derivatives.
+    pub const EVENTS: [&'static str; 4] = ["collision", "lift_off", "slip", "stick"];
+}
+
+/// The definition of a periodic motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Periodic {
-    /// when it has returned
+    /// the end of a period
     pub returns: Return,
-    /// coordinates that take their values of the start again when it has returned: places along which nothing changes, and
-    /// what a symmetry brings back (the next leg, the next spoke)
+    /// coordinates that are reset to their initial values after each period: those on which nothing depends,
+    /// and those that a symmetry brings back (the next leg, the next spoke)
     pub reset: Vec<usize>,
-    /// the longest period that is waited for, s
+    /// the longest period to wait for, s
     pub longest: f64,
 }
 
 /// A periodic motion.
 #[derive(Clone, Debug)]
 pub struct Orbit {
-    /// coordinates and independent speeds at its beginning
+    /// initial coordinates and independent speeds
     pub state: Vec<f64>,
     /// its period, s
     pub period: f64,
     /// its events, in order
     pub events: Vec<Event>,
-    /// derivatives of the state when it has returned by the state at the beginning: columns of coordinates that are reset, and
-    /// directions in which contacts that are closed at the beginning would part or slip, are zero
+    /// derivatives of the returned state with respect to the initial state; columns of coordinates that are
+    /// reset are zero, and so are derivatives along directions in which initially closed contacts would
+    /// separate or slip
     pub matrix: DMatrix<f64>,
     /// the eigenvalues of that matrix, the greatest first
     pub multipliers: Vec<Complex<f64>>,
-    /// derivatives of the state when it has returned by each of the variables asked for (rows as `matrix`)
+    /// derivatives of the returned state with respect to each of the given variables (rows as in `matrix`)
     pub by: DMatrix<f64>,
-    /// what is left of the difference between both states, relative to their size
+    /// the remaining difference between both states, relative to their size
     pub residual: f64,
 }
 
 impl Orbit {
-    /// Whether all multipliers lie within the unit circle.
+    /// Whether all multipliers lie inside the unit circle.
     pub fn is_stable(&self) -> bool {
         self.multipliers.first().is_none_or(|first| first.norm() < 1.0)
     }
@@ -71,15 +78,15 @@ impl Orbit {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum OrbitError {
-    /// A motion cannot be followed or differentiated.
+    /// A motion cannot be simulated or differentiated.
     Gradient(GradientError),
     /// The motion from the start has no derivative.
     Undefined(Undefined),
     /// The motion does not return within the longest period, s.
     NoReturn(f64),
-    /// Newton's method does not get nearer: the least residual so far.
+    /// Newton's method does not converge: the smallest residual so far.
     NotFound(f64),
-    /// The task is wrong.
+    /// The task has a mistake.
     BadRequest(String),
 }
 
@@ -109,16 +116,17 @@ impl From<GradientError> for OrbitError {
     }
 }
 
-/// Steps of Newton's method, and halvings of one.
+/// Largest numbers of Newton steps, and of halvings of one.
 const STEPS: usize = 30;
 const HALVINGS: usize = 12;
-/// A motion is periodic where it misses by less than this part of the state, and Newton's method brings no more.
-const FOUND: f64 = 1e-9;
-/// Singular values below this part of the greatest are none.
+/// A motion is periodic if it returns to its state up to this relative difference, and Newton's method does
+/// not decrease it any more.
+const TOLERANCE: f64 = 1e-9;
+/// Singular values below this part of the greatest count as zero.
 const SINGULAR: f64 = 1e-12;
 
-/// Finds the periodic motion next to a start state, by Newton's method with derivatives of the return, and differentiates it by
-/// `by` (parameters, mu, e).
+/// Finds the periodic motion next to a start state by Newton's method with derivatives of the return map, and
+/// differentiates it with respect to `by` (parameters, mu, e).
 ///
 /// # Errors
 ///
@@ -153,7 +161,7 @@ pub fn find_orbit(
         let Some(found) = nearer else { break };
         (state, here) = found;
     }
-    if here.residual > FOUND { Err(OrbitError::NotFound(here.residual)) } else { Ok(here.orbit(state)) }
+    if here.residual > TOLERANCE { Err(OrbitError::NotFound(here.residual)) } else { Ok(here.orbit(state)) }
 }
 
 fn check(mechanism: &InterpretedMechanism, start: &State<'_>, periodic: &Periodic) -> Result<(), OrbitError> {
@@ -179,14 +187,14 @@ fn check(mechanism: &InterpretedMechanism, start: &State<'_>, periodic: &Periodi
     }
 }
 
-/// The least solution of a system that may be singular.
+/// The least-norm solution of a system that may be singular.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
     let decomposed = matrix.clone().svd(true, true);
     let least = SINGULAR * decomposed.singular_values.max();
     decomposed.solve(right, least).unwrap_or_else(|_| DVector::zeros(right.len()))
 }
 
-/// A return, to be made from one state or another.
+/// The return map, which is evaluated at different states.
 pub(crate) struct Task<'a> {
     pub mechanism: &'a InterpretedMechanism,
     pub start: &'a State<'a>,
@@ -196,7 +204,7 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The time when the motion has returned, s.
+    /// The time at the end of the period, s.
     fn time(&self, state: &State<'_>) -> Result<f64, OrbitError> {
         let (name, contact, count) = match &self.periodic.returns {
             Return::After(period) => return Ok(state.time + period),
@@ -235,7 +243,8 @@ impl Task<'_> {
         let variables = (0..n).filter(kept).map(By::Coordinate);
         let variables: Vec<By> = variables.chain((0..count - n).map(By::Speed)).collect();
         let all: Vec<By> = variables.iter().chain(self.by).copied().collect();
-        let found = carried(self.mechanism, &from, self.options.clone(), &all, &[time], Start::Held)?;
+        let found =
+            differentiate_from(self.mechanism, &from, self.options.clone(), &all, &[time], Start::Held)?;
         if let Some(why) = found.undefined {
             return Err(OrbitError::Undefined(why));
         }
@@ -283,7 +292,7 @@ impl Task<'_> {
     }
 }
 
-/// A motion up to its return.
+/// A motion over one period.
 pub(crate) struct Returned {
     end: Vec<f64>,
     period: f64,
@@ -294,12 +303,12 @@ pub(crate) struct Returned {
 }
 
 impl Returned {
-    /// By how much its end differs from its start.
+    /// The difference between its end and its start.
     pub fn difference(&self, state: &[f64]) -> DVector<f64> {
         DVector::from_iterator(state.len(), self.end.iter().zip(state).map(|(end, start)| end - start))
     }
 
-    /// The periodic motion that it is.
+    /// The periodic motion with this state.
     pub fn orbit(self, state: Vec<f64>) -> Orbit {
         let Self { period, events, matrix, by, residual, .. } = self;
         let mut multipliers: Vec<Complex<f64>> = matrix.complex_eigenvalues().iter().copied().collect();

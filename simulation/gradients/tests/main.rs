@@ -7,3 +7,4 @@ mod differences;
 mod fits;
 mod orbits;
 mod undefined;
+mod validation;

@@ -34,6 +34,34 @@ fn a_rimless_wheel_rolls_downhill() {
     assert!((orbit.by[(5, 0)] - exact).abs() < 1e-11 * exact, "{} {exact}", orbit.by[(5, 0)]);
 }
 
+/// A passive walker with feet of radius r, whose middles are at rho = l - r from the hub. With the hub at (B, A) from the
+/// contact that ends, A = r + rho cos(alpha), B = rho sin(alpha), and at (-B, A) from the one that begins,
+/// eta = (J + m (A^2 - B^2)) / (J + m (A^2 + B^2)); a step leads 2 (r alpha + B) downhill. The multiplier is eta^2.
+#[test]
+fn a_walker_with_curved_feet() {
+    let mechanism = read("passive_walker.mech");
+    let (l, r, alpha, gamma) = (1.0_f64, 0.3, std::f64::consts::PI / 8.0, 0.04_f64);
+    let (inertia, g) = (0.1, 9.81);
+    let (a, b) = (r + (l - r) * alpha.cos(), (l - r) * alpha.sin());
+    let about_contact = inertia + a * a + b * b;
+    let eta = (inertia + a * a - b * b) / about_contact;
+    let k = 4.0 * g * gamma.sin() * (r * alpha + b) / about_contact;
+    let w = (eta * eta * k / (1.0 - eta * eta)).sqrt();
+    let rate = 1.1 * w;
+    let (q, u) = ([0.0, a, -alpha], [rate * a, rate * b, rate]);
+    let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+    let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
+    let periodic = Periodic { returns, reset: vec![0, 1, 2], longest: 5.0 };
+    let by = [By::Parameter(5)];
+    let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
+    assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
+    assert!((orbit.multipliers[0].re - eta * eta).abs() < 1e-11, "{:?}", orbit.multipliers);
+    assert!(orbit.multipliers[1..].iter().all(|other| other.norm() < 1e-11), "{:?}", orbit.multipliers);
+    assert!(orbit.is_stable() && orbit.residual < 1e-13);
+    let exact = eta * eta * k / gamma.tan() / (2.0 * w);
+    assert!((orbit.by[(5, 0)] - exact).abs() < 1e-11 * exact, "{} {exact}", orbit.by[(5, 0)]);
+}
+
 /// What a ball and the plate are at the locked motion with the period T = 2 pi / w: it strikes at the phase phi with
 /// a w cos phi = (g T / 2) (1 - e) / (1 + e); trace 1 + e^2 - (1 + e)^2 a w^2 sin(phi) / g, determinant e^2.
 struct Locked {

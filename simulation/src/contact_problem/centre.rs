@@ -1,32 +1,34 @@
-//! The forces in the middle of those that the laws allow.
+//! The analytic centre of the forces that the laws allow.
 //!
-//! Forces x_0 + Z y give one and the same motion. Each sticking contact asks u_n >= abs(u_tan), where u_tan is lambda_tan /
-//! mu, and each sliding one u_n >= 0. The centre has the least sum of -ln(u_n^2 - abs(u_tan)^2), of -ln u_n and of
-//! abs(x)^2 / (2 load^2). Where these conditions exclude each other, the forces are taken whose greatest lack of normal
-//! force is least.
+//! The forces x_0 + Z y give the same motion. Each sticking contact requires u_n >= abs(u_tan), where u_tan
+//! is lambda_tan / mu, and each sliding one u_n >= 0. The centre minimises the sum of -ln(u_n^2 -
+//! abs(u_tan)^2), of -ln u_n, and of abs(x)^2 / (2 load^2). If these conditions are incompatible, the forces
+//! whose greatest violation is least are taken.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+use hodograph::generated::hypot;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
     cone::{Cone, least_reserve},
+    linear::Vector,
     squares::Squares,
 };
 
-/// How the steps of Newton's method are found.
+/// How Newton steps are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum By {
-    /// from the Hessian, by Cholesky
+    /// from the Hessian, by a Cholesky factorisation
     Hessian,
-    /// from its squares, by orthogonal transformations: where hardly any forces are left, and for cones of different kinds
-    /// that share normal forces, whose greatest common reserve lies in a corner that the Hessian does not see
-    /// ([`super::squares`])
+    /// from the square roots of the Hessian's terms, by orthogonal transformations: if the set of allowed
+    /// forces is thin, and for cones of different kinds with shared normal forces, whose greatest common
+    /// reserve lies in a corner where the Hessian is inaccurate ([`super::squares`])
     Squares,
 }
 
-/// The centre of the forces x_0 + Z y, and whether it lies within all cones. `start` is a first guess of the
-/// forces. With `decide` it ends as soon as it is known that none do.
+/// The centre of the forces x_0 + Z y, and whether it lies inside all cones. `start` is an initial guess of
+/// the forces. With `decide` the computation ends as soon as it is known that no forces lie inside.
 pub(super) fn centre(
     cones: &[Cone],
     least: &DVector<f64>,
@@ -39,7 +41,7 @@ pub(super) fn centre(
     let starts = start.map(project).into_iter().chain([least.clone()]);
     let follow_on = |x: DVector<f64>| {
         let x = follow(cones, basis, load, x, by);
-        // Where hardly any forces are left the Hessian does not see along the thin set that they form.
+        // If the set of allowed forces is thin, the Hessian is inaccurate along it.
         let thin = by == By::Hessian && least_reserve(cones, &x) < THIN * load;
         if thin { follow(cones, basis, load, x, By::Squares) } else { x }
     };
@@ -48,29 +50,38 @@ pub(super) fn centre(
             return (follow_on(x), true);
         }
     }
-    match enter(cones, basis, load, least.clone(), (decide, by)) {
+    let entered = match enter(cones, basis, load, least.clone(), (decide, by)) {
+        // Where so little is left the Hessian does not tell whether any forces are allowed.
+        Err(x) if by == By::Hessian && least_reserve(cones, &x).abs() < THIN * load => {
+            enter(cones, basis, load, x, (decide, By::Squares))
+        }
+        entered => entered,
+    };
+    match entered {
         Ok(x) => (follow_on(x), true),
         Err(x) => (x, false),
     }
 }
 
-/// A reserve with which the way to the centre may begin, beside the load.
+/// A reserve at which the path to the centre may start, relative to the load.
 const START: f64 = 1e-3;
 
-/// Reserves below this part of the load have rows of the Hessian beside whose squares others lose half of their digits.
+/// Reserves below this part of the load have terms in the Hessian beside which the squares of others lose
+/// half of their digits.
 const THIN: f64 = 1e-4;
 
-/// Gradient and Hessian of the barrier by y and by the reserve s that all cones keep, and of the square.
+/// Gradient and Hessian of the barrier with respect to y and to the reserve s of all cones, and of the
+/// square.
 struct Barrier {
     gradient: DVector<f64>,
     hessian: DMatrix<f64>,
 }
 
-/// The barrier of the cones lessened by `s`; the last variable is s.
+/// The barrier of the cones reduced by `s`; the last variable is s.
 fn barrier(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s: f64) -> Barrier {
     let p = basis.ncols();
     let mut by_x = DVector::zeros(x.len());
-    // Rows of the Hessian by x times the basis: added contact by contact.
+    // Rows of the Hessian with respect to x, times the basis; added contact by contact.
     let mut gradient = DVector::zeros(p + 1);
     let mut hessian = DMatrix::zeros(p + 1, p + 1);
     let square = 1.0 / (load * load);
@@ -80,11 +91,11 @@ fn barrier(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s:
             by_x[cone.normal] -= 1.0 / n;
             gradient[p] += 1.0 / n;
             let row = row_of(basis, &[(cone.normal, 1.0 / n)], -1.0 / n);
-            hessian.ger(1.0, &row, &row, 1.0);
+            add_square(&mut hessian, 1.0, &row);
             continue;
         };
         let (ut, us) = (factor * x[t], factor * x[r]);
-        let size = ut.hypot(us);
+        let size = hypot(ut, us);
         let q = (n - size) * (n + size);
         // -ln q with q = n^2 - ut^2 - us^2.
         let (dn, dt, ds) = (-2.0 * n / q, 2.0 * ut / q, 2.0 * us / q);
@@ -93,12 +104,12 @@ fn barrier(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s:
         by_x[r] += factor * ds;
         gradient[p] -= dn;
         let row = row_of(basis, &[(cone.normal, dn), (t, factor * dt), (r, factor * ds)], -dn);
-        hessian.ger(1.0, &row, &row, 1.0);
+        add_square(&mut hessian, 1.0, &row);
         let row = row_of(basis, &[(cone.normal, 1.0)], -1.0);
-        hessian.ger(-2.0 / q, &row, &row, 1.0);
+        add_square(&mut hessian, -2.0 / q, &row);
         for axis in [t, r] {
             let row = row_of(basis, &[(axis, factor)], 0.0);
-            hessian.ger(2.0 / q, &row, &row, 1.0);
+            add_square(&mut hessian, 2.0 / q, &row);
         }
     }
     by_x.axpy(square, x, 1.0);
@@ -109,10 +120,18 @@ fn barrier(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s:
     Barrier { gradient, hessian }
 }
 
-/// The derivative by (y, s) of a sum of components of x and of s.
-fn row_of(basis: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) -> DVector<f64> {
+/// Adds factor times row row^T.
+fn add_square(hessian: &mut DMatrix<f64>, factor: f64, row: &[f64]) {
+    for (column, last) in hessian.as_mut_slice().chunks_exact_mut(row.len()).zip(row) {
+        let scaled = factor * last;
+        column.iter_mut().zip(row).for_each(|(entry, own)| *entry += scaled * own);
+    }
+}
+
+/// The derivative with respect to (y, s) of a sum of components of x and of s.
+fn row_of(basis: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) -> Vector {
     let p = basis.ncols();
-    let mut row = DVector::zeros(p + 1);
+    let mut row = Vector::zeros(p + 1);
     for &(place, factor) in parts {
         for j in 0..p {
             row[j] += factor * basis[(place, j)];
@@ -122,7 +141,7 @@ fn row_of(basis: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) -> DVector<f6
     row
 }
 
-/// Newton's method to the centre from forces within all cones.
+/// Newton's method to the centre, from forces inside all cones.
 fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>, by: By) -> DVector<f64> {
     let p = basis.ncols();
     let newton = |x: &DVector<f64>| match by {
@@ -131,7 +150,7 @@ fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>, 
             let right = -gradient.rows(0, p);
             let factors = hessian.view((0, 0), (p, p)).into_owned().cholesky()?;
             let step = factors.solve(&right);
-            // The length of the step in the metric of the barrier.
+            // The length of the step in the local metric of the barrier.
             let length = right.dot(&step).max(0.0).sqrt();
             Some((step, length))
         }
@@ -152,7 +171,7 @@ fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>, 
     x
 }
 
-/// Forces within all cones, or those whose least reserve is the greatest.
+/// Forces inside all cones, or those with the greatest least reserve.
 fn enter(
     cones: &[Cone],
     basis: &DMatrix<f64>,
@@ -184,7 +203,7 @@ fn enter(
     };
     let mut s = least_reserve(cones, &x) - load;
     let mut weight = 1.0;
-    // On the path s is greatest but for the degree over the weight.
+    // On the path the distance of s from its maximum is the degree over the weight.
     let degree = 2.0 * cones.len() as f64 + 1.0;
     while degree / weight > GAP {
         let mut moved = false;
@@ -195,7 +214,7 @@ fn enter(
                 let (next, slack) = (&x + &change * part, s + step[p] * part);
                 (least_reserve(cones, &next) > slack && slack < load).then_some((next, slack))
             };
-            // Far from the path as long a part as the cones allow, near it a whole step.
+            // Far from the path the step is as long as the cones allow, near it a full step.
             let mut part = 1.0;
             let next = loop {
                 match inside(part) {
@@ -223,11 +242,11 @@ fn enter(
     if least_reserve(cones, &x) > GAP * load { Ok(x) } else { Err(x) }
 }
 
-/// Newton steps to the centre; usual are 5 to 15.
+/// Largest number of Newton steps to the centre; usually 5 to 15 are needed.
 const STEPS: usize = 80;
 
-/// How near to the greatest reserve the path ends, beside the load.
+/// Distance from the greatest reserve at which the path ends, relative to the load.
 const GAP: f64 = 1e-13;
 
-/// Newton steps for one point of the path to the greatest reserve.
+/// Largest number of Newton steps for one point of the path to the greatest reserve.
 const INNER: usize = 40;

@@ -1,8 +1,9 @@
-//! Forces that are proven: the certificate of given forces, the forces of given modes, and those that the method
-//! of the runtime finds.
+//! Forces with a certificate: the certificate of given forces, the forces of given modes, and those that the
+//! method of the runtime finds.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+use hodograph::generated::hypot;
 use hodograph::several::{
     self, Certificate, Dense, SeveralContacts, Unfound, memory_of_several, solve_several,
 };
@@ -58,7 +59,7 @@ fn several_contacts<'a>(problem: &Problem<'a>, beta: &'a [f64]) -> SeveralContac
     SeveralContacts { matrix: problem.w.as_slice(), beta, mu: problem.mu, slip: problem.slip }
 }
 
-/// beta, zero where it is rounding.
+/// beta with components below their rounding errors set to zero.
 fn without_noise(problem: &Problem<'_>) -> Vec<f64> {
     (0..problem.beta.len()).map(|row| problem.pull(row)).collect()
 }
@@ -71,7 +72,7 @@ fn unsolved(reason: Unfound<f64>) -> Unsolved {
     }
 }
 
-/// What each contact does.
+/// The mode of each contact.
 pub(super) fn modes(problem: &Problem<'_>, force: &DVector<f64>, acceleration: &DVector<f64>) -> Vec<Mode> {
     let mut terms = problem.beta.abs();
     for (column, force) in problem.w.column_iter().zip(force.iter()) {
@@ -89,7 +90,7 @@ pub(super) fn modes(problem: &Problem<'_>, force: &DVector<f64>, acceleration: &
             if let Some(d) = problem.slip[i] {
                 return Mode::Slide(d);
             }
-            let size = a.y.hypot(a.z);
+            let size = hypot(a.y, a.z);
             if size <= zero(1).max(zero(2)) {
                 Mode::Stick
             } else {
@@ -99,16 +100,16 @@ pub(super) fn modes(problem: &Problem<'_>, force: &DVector<f64>, acceleration: &
         .collect()
 }
 
-/// Greatest violation that is accepted.
+/// Greatest violation of a law that is accepted.
 pub(super) const ACCEPTED: f64 = 1e-12;
 
-/// From so many contacts on, a matrix with many zeros is eliminated by blocks.
+/// From this number of contacts on, a matrix with many zeros is eliminated by blocks.
 const SPARSE: usize = 12;
 
-/// Accelerations up to this beside their terms count as zero.
+/// Accelerations up to this part of their terms count as zero.
 const ZERO: f64 = 1e-12;
 
-/// The forces of modes, if they obey the laws.
+/// The forces in these modes, if they obey the laws.
 pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option<Solution> {
     let found = prescribed(problem, wanted, None, Wanted::Decision).ok()?;
     if found.margin < -FITS {
@@ -124,7 +125,7 @@ pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option
     Some(Solution { force, acceleration, modes, certificate, solutions: Solutions::Unknown })
 }
 
-/// The forces without what rounding takes out of the cones.
+/// The forces moved back into the cones, where rounding has moved them outside.
 fn within(problem: &Problem<'_>, modes: &[Mode], mut force: DVector<f64>) -> DVector<f64> {
     for (i, mode) in modes.iter().enumerate() {
         let normal = force[3 * i].max(0.0);

@@ -1,10 +1,11 @@
 //! Directions of slip that begins very slowly.
 //!
-//! Where friction is hardly exceeded the accelerations of slip are small beside the forces over the masses, and differences
-//! of these do not tell their directions: a box that begins to slide with 1e-9 of g on its four corners would know them
-//! to 1e-7 rad. But the points of a body cannot slip as they like. Here the unknown is the common motion: the accelerations
-//! that the mechanism can give to all of these contacts at once, while the others keep their modes. Their directions are
-//! then as exact as numbers are.
+//! If friction is hardly exceeded, the accelerations of slip are small compared with forces over masses, and
+//! their directions cannot be computed as differences of these: for a box that begins to slide with 1e-9 g on
+//! its four corners the directions would be accurate only to 1e-7 rad. But the accelerations of the points of
+//! a body are not independent. Here the unknown is the common motion: the accelerations that the mechanism
+//! can give to all of these contacts at once, while the others keep their modes. The directions are then
+//! accurate to rounding.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -16,14 +17,14 @@ use super::{
     prescribed::{Admissible, SINGULAR, with_modes_near},
 };
 
-/// Steps of Newton's method at most, and changes of directions that count as none, rad.
+/// Largest number of Newton steps, and the change of directions that counts as zero, rad.
 const ROUNDS: usize = 40;
 const TURNED: f64 = 4e-15;
 const NEARLY: f64 = 1e-11;
 
-/// Modes in which each of these contacts slips along its own acceleration, from modes with directions close by; `None` where
-/// no common motion goes along them. `across` are the accelerations across the directions that are wanted of slip that
-/// there is, which may grow or fall; without them slip begins.
+/// Modes in which each of these contacts slips along its own acceleration, computed from modes with similar
+/// directions; `None` if there is no such common motion. `across` holds the required accelerations
+/// perpendicular to the directions of existing slip, which may grow or decrease; without them slip begins.
 pub(crate) fn slip_together(
     problem: &Problem<'_>,
     modes: &[Mode],
@@ -56,10 +57,10 @@ pub(crate) fn slip_together(
     None
 }
 
-/// The accelerations that contacts can have while the others keep their modes, in units of the problem.
+/// The accelerations that contacts can have while the others keep their modes, in the units of the problem.
 struct CommonMotion<'a> {
     open: &'a [usize],
-    /// rows of the other equations: normals of all that press, and friction of those that stick
+    /// rows of the other equations: normals of all pressed contacts, and friction of the sticking ones
     held: Vec<usize>,
     /// rows of the tangential accelerations of the contacts that slip
     rows: Vec<usize>,
@@ -78,7 +79,7 @@ impl<'a> CommonMotion<'a> {
             }
         }
         let rows: Vec<usize> = open.iter().flat_map(|&i| [3 * i + 1, 3 * i + 2]).collect();
-        // What is left of W once the others are held.
+        // The Schur complement of W after elimination of the other contacts.
         let elimination = Elimination::new(square(&held, &held, problem), held.len(), SINGULAR);
         let mut left = DMatrix::from_fn(rows.len(), rows.len(), |a, b| entry(problem, rows[a], rows[b]));
         for b in 0..rows.len() {
@@ -97,7 +98,7 @@ impl<'a> CommonMotion<'a> {
         (!kept.is_empty()).then_some(Self { open, held, rows, basis })
     }
 
-    /// The common motion along the directions so far, and whether slip grows (1) or falls (-1).
+    /// The common motion along the present directions, and whether slip grows (1) or decreases (-1).
     fn start(
         &self,
         problem: &Problem<'_>,
@@ -120,13 +121,13 @@ impl<'a> CommonMotion<'a> {
             .map(|(&row, along)| problem.scale(row / 3) * found.acceleration[row] * along)
             .sum();
         let rate = rate / motion.norm_squared();
-        // Forces in directions that are not yet right may seem to hold what begins to slip.
+        // Forces in wrong directions may seem to prevent slip.
         let rate = if begins { rate.abs() } else { rate };
         let forward = (0..self.open.len()).all(|j| two(&motion, j).dot(&two(&along, j)) > 0.5);
         (forward && rate != 0.0 && rate.is_finite()).then(|| (rate * y, rate.signum()))
     }
 
-    /// Gives the contacts the directions of this motion.
+    /// Sets the directions of the contacts to those of this motion.
     fn directions(&self, modes: &mut [Mode], y: &DVector<f64>, sign: f64, wanted: &[f64]) -> Option<()> {
         let motion = &self.basis * y;
         for (j, &i) in self.open.iter().enumerate() {
@@ -137,7 +138,7 @@ impl<'a> CommonMotion<'a> {
         Some(())
     }
 
-    /// A step of Newton's method for the motion, with the forces that go along with it.
+    /// A Newton step for the motion and its forces.
     fn step(
         &self,
         problem: &Problem<'_>,
@@ -149,7 +150,7 @@ impl<'a> CommonMotion<'a> {
     ) -> Option<DVector<f64>> {
         let (m, r) = (self.held.len(), self.basis.ncols());
         let motion = &self.basis * y;
-        // How friction turns with the motion.
+        // The change of the friction directions with the motion.
         let mut turning = DMatrix::zeros(self.rows.len(), self.rows.len());
         for (j, &i) in self.open.iter().enumerate() {
             let Mode::Slide(d) = modes[i] else { return None };
@@ -159,7 +160,7 @@ impl<'a> CommonMotion<'a> {
             turning.view_mut((2 * j, 2 * j), (2, 2)).copy_from(&(size * across * across.transpose()));
         }
         let turning = &turning * &self.basis;
-        // Motions that turn friction much are small: each is measured by that.
+        // Small motions change the directions considerably: each change is relative to them.
         let eigen = SymmetricEigen::new(self.basis.tr_mul(&turning));
         let mut scaled = eigen.eigenvectors;
         for (mut column, turns) in scaled.column_iter_mut().zip(eigen.eigenvalues.iter()) {
@@ -205,7 +206,7 @@ impl<'a> CommonMotion<'a> {
         let elimination = Elimination::new(numbers, m + r, SINGULAR);
         let mut step = DVector::from_column_slice(&elimination.solve(&right));
         if elimination.rank < m + r {
-            // Of the many ways to share the load the nearest one.
+            // Of many distributions of the load, take the nearest.
             let basis = elimination.null_space();
             step -= &basis * basis.tr_mul(&step);
         }
@@ -214,7 +215,7 @@ impl<'a> CommonMotion<'a> {
     }
 }
 
-/// An entry of W in units in which each contact has a block of trace one.
+/// An entry of W in units in which the block of each contact has the trace one.
 fn entry(problem: &Problem<'_>, row: usize, column: usize) -> f64 {
     problem.scale(row / 3) * problem.scale(column / 3) * problem.w[(row, column)]
 }
@@ -245,7 +246,8 @@ mod tests {
     use super::*;
     use crate::contact_problem::Mode;
 
-    /// A box on its four corners, turned about the normal of an incline by an angle: W and beta, down along t.
+    /// A box on its four corners, rotated by an angle about the normal of an incline: W, and beta directed
+    /// downwards along t.
     fn a_box(turn: f64, slope: f64) -> (DMatrix<f64>, DVector<f64>) {
         let (a, b, c) = (0.2, 0.15, 0.1);
         let (sin, cos) = turn.sin_cos();
@@ -267,7 +269,8 @@ mod tests {
         (partials.tr_mul(&response), partials.tr_mul(&pull))
     }
 
-    /// All four corners slip down the incline, and nothing turns the box, however little its friction is exceeded.
+    /// All four corners slip down the incline without rotation of the box, even if its friction is hardly
+    /// exceeded.
     #[test]
     fn corners_slip_along_the_common_motion() {
         let slope = 0.3_f64.atan();
@@ -287,7 +290,7 @@ mod tests {
                 let found = found.unwrap_or_else(|| panic!("{turn} {excess:e}"));
                 for mode in found {
                     let Mode::Slide(d) = mode else { panic!("{mode:?}") };
-                    // Down. The square of what is left is far below the excess.
+                    // Downwards. The square of the remaining component is far below the excess.
                     let close = if excess > 1e-11 { 1e-12 } else { 1e-6 };
                     assert!(d.y.abs() < close && d.x > 0.0, "{turn} {excess:e}: {d}");
                 }

@@ -3,6 +3,7 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+use hodograph::generated::hypot;
 use nalgebra::DVector;
 
 /// A condition on the forces: the row of u_n, and those of u_tan with the factor 1 / mu.
@@ -15,7 +16,7 @@ pub(super) struct Cone {
 impl Cone {
     /// u_n - abs(u_tan).
     pub fn reserve(&self, x: &DVector<f64>) -> f64 {
-        let friction = self.tangential.map_or(0.0, |(t, s, factor)| factor * x[t].hypot(x[s]));
+        let friction = self.tangential.map_or(0.0, |(t, s, factor)| factor * hypot(x[t], x[s]));
         x[self.normal] - friction
     }
 }

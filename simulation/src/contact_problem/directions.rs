@@ -1,8 +1,9 @@
 //! The directions in which contacts begin to slip while the others keep given modes.
 //!
-//! The others are eliminated; of those that begin to slip a = W' lambda + beta' is left, with a_n = 0, lambda_tan =
-//! -mu lambda_n d and a_tan = gamma d, gamma > 0. For given directions the normal forces follow from linear equations, so
-//! that the angles are the only unknowns: the components of a_tan across d vanish.
+//! The others are eliminated. For the contacts that begin to slip a = W' lambda + beta' remains, with a_n =
+//! 0, lambda_tan = -mu lambda_n d and a_tan = gamma d, gamma > 0. For given directions the normal forces
+//! follow from linear equations, so that the angles are the only unknowns: the components of a_tan
+//! perpendicular to d vanish.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -14,7 +15,7 @@ use super::{
     prescribed::SINGULAR,
 };
 
-/// A mode whose direction may be open.
+/// A mode whose direction may be unknown.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Choice {
     Known(Mode),
@@ -31,7 +32,7 @@ pub(super) fn directions(problem: &Problem<'_>, chosen: &[Choice], open: &[usize
     angles.iter().map(|angles| angles.iter().map(|&angle| direction(angle)).collect()).collect()
 }
 
-/// Of a planar problem exactly along its axis.
+/// In a planar problem the direction is exactly along its axis.
 fn direction(angle: f64) -> Vector2<f64> {
     let exact = |part: f64| if part.abs() <= 4.0 * f64::EPSILON { 0.0 } else { part };
     Vector2::new(exact(angle.cos()), exact(angle.sin()))
@@ -42,18 +43,18 @@ struct Reduced {
     w: [[f64; 3 * MOST]; 3 * MOST],
     beta: [f64; 3 * MOST],
     mu: [f64; MOST],
-    /// how many they are
+    /// number of contacts
     count: usize,
 }
 
 /// The greatest number of contacts of which all modes are tried.
 pub const MOST_ENUMERATED: usize = 4;
-/// The most contacts that begin to slip.
+/// The largest number of contacts that begin to slip.
 const MOST: usize = MOST_ENUMERATED;
 
 impl Reduced {
     fn new(problem: &Problem<'_>, chosen: &[Choice], open: &[usize]) -> Self {
-        // Unknowns and equations of the others, and the forces that belong to these.
+        // Unknowns and equations of the other contacts, and their forces.
         let (mut rows, mut along): (Vec<usize>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
         for (i, choice) in chosen.iter().enumerate() {
             match choice {
@@ -106,7 +107,7 @@ impl Reduced {
         reduced
     }
 
-    /// Of one contact: f times the component across d is a trigonometric polynomial of degree two.
+    /// For one contact: f times the perpendicular component is a trigonometric polynomial of degree two.
     fn of_one(&self) -> Vec<Vec<f64>> {
         let (w, beta, mu) = (&self.w, &self.beta, self.mu[0]);
         let across = |angle: f64| {
@@ -126,7 +127,7 @@ impl Reduced {
             if (here > 0.0) != (right > 0.0) {
                 roots.push(vec![zero(&across, angles[i], angles[i] + step)]);
             } else if here.abs() < left.abs() && here.abs() <= right.abs() && (here > 0.0) == (left > 0.0) {
-                // Two zeros may lie between the samples, on both sides of an extremum.
+                // Two zeros may lie between samples, on both sides of an extremum.
                 let curved = left - 2.0 * here + right;
                 let top = angles[i] + 0.5 * step * (left - right) / curved;
                 if curved != 0.0 && (across(top) > 0.0) != (here > 0.0) {
@@ -138,8 +139,8 @@ impl Reduced {
         roots
     }
 
-    /// Of several: Newton's method from the places of a grid of directions at which all components across them
-    /// change their signs, or are least.
+    /// For several contacts: Newton's method from the cells of a grid of directions in which all
+    /// perpendicular components change sign, or are smallest.
     fn by_grid(&self) -> Vec<Vec<f64>> {
         let u = self.count;
         let count: usize = [1, 32, 12, 8, 6][u.min(MOST)];
@@ -154,7 +155,7 @@ impl Reduced {
             angles
         };
         let values: Vec<[f64; MOST]> = (0..size).map(|number| self.smooth(&angles(number))).collect();
-        // The next place along an axis, or the one before.
+        // The next or previous grid point along an axis.
         let beside = |number: usize, j: usize, by: usize| {
             let stride = count.pow(j as u32);
             let here = place(number, j);
@@ -167,7 +168,7 @@ impl Reduced {
                 here <= norm(&values[beside(number, j, 1)])
                     && here <= norm(&values[beside(number, j, count - 1)])
             });
-            // The corners of the cell that begins here.
+            // The corners of the cell with this first corner.
             let corner = |corner: usize| {
                 (0..u).fold(number, |at, j| if corner >> j & 1 == 1 { beside(at, j, 1) } else { at })
             };
@@ -191,8 +192,8 @@ impl Reduced {
         found
     }
 
-    /// Newton's method on the components of a_tan across the directions; `None` where it does not come to directions with
-    /// gamma >= 0 and lambda_n >= 0.
+    /// Newton's method for the perpendicular components of a_tan; `None` if it does not converge to
+    /// directions with gamma >= 0 and lambda_n >= 0.
     fn newton(&self, mut angles: [f64; MOST]) -> Option<[f64; MOST]> {
         let u = self.count;
         let greatest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -218,7 +219,7 @@ impl Reduced {
         None
     }
 
-    /// What a normal force with its friction along d does to a row.
+    /// The contribution of a unit normal force with its friction along d to a row.
     fn push(&self, row: usize, j: usize, d: &Vector2<f64>) -> f64 {
         let w = &self.w[row];
         w[3 * j] - self.mu[j] * (w[3 * j + 1] * d.x + w[3 * j + 2] * d.y)
@@ -251,7 +252,7 @@ impl Reduced {
         Some(Moving { d, tangential, lambda, normal })
     }
 
-    /// The components of a_tan across the directions times the determinant of the equations of the normal forces: a
+    /// The perpendicular components of a_tan times the determinant of the equations of the normal forces: a
     /// function without poles.
     fn smooth(&self, angles: &[f64; MOST]) -> [f64; MOST] {
         let mut values = [f64::MAX.sqrt(); MOST];
@@ -263,12 +264,12 @@ impl Reduced {
         values
     }
 
-    /// The components of a_tan across the directions, and their derivatives by the angles.
+    /// The perpendicular components of a_tan, and their derivatives with respect to the angles.
     fn across(&self, angles: &[f64; MOST]) -> Option<Across> {
         let u = self.count;
         let Moving { d, tangential, lambda, normal } = self.moving(angles)?;
         let turned = d.map(|d| Vector2::new(-d.y, d.x));
-        // How the push of a normal force changes with its angle.
+        // The derivative of the contribution of a normal force with respect to its angle.
         let turn = |row: usize, j: usize| {
             let w = &self.w[row];
             -self.mu[j] * (w[3 * j + 1] * turned[j].x + w[3 * j + 2] * turned[j].y)
@@ -311,7 +312,7 @@ struct Across {
     fits: bool,
 }
 
-/// A few linear equations, eliminated with pivots from the columns.
+/// A small system of linear equations, eliminated with column pivoting.
 struct Small {
     lu: [[f64; MOST]; MOST],
     rows: [usize; MOST],
@@ -320,7 +321,7 @@ struct Small {
 }
 
 impl Small {
-    /// `None` of a singular matrix.
+    /// `None` for a singular matrix.
     fn new(mut lu: [[f64; MOST]; MOST], count: usize) -> Option<Self> {
         let (mut rows, mut determinant) = ([0, 1, 2, 3], 1.0);
         for j in 0..count {
@@ -359,11 +360,11 @@ impl Small {
     }
 }
 
-/// Samples around the circle, and rounds of Newton's method.
+/// Number of samples around the circle, and largest number of Newton steps.
 const SAMPLES: usize = 256;
 const ROUNDS: usize = 30;
 
-/// The zero between two angles with values of unlike sign: bisection with secants.
+/// The zero between two angles with values of opposite sign: bisection and secants.
 fn zero(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (function(low), function(high));
     for round in 0..200 {

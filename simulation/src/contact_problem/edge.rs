@@ -1,7 +1,7 @@
-//! Contacts at the edge of their friction.
+//! Contacts on the boundary of their friction cones.
 //!
-//! Where friction misses a cone by less than the certificate accepts, forces without slip are accepted although
-//! they are not quite allowed. The motion is then one that slips against them, however slowly.
+//! If friction misses a cone by less than the certificate tolerates, forces without slip are accepted
+//! although they are not quite allowed. The motion is then one in which these contacts slip, however slowly.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -15,8 +15,8 @@ use super::{
     problem::three,
 };
 
-/// The motion in which those contacts begin to slip that friction holds but for an excess that is above
-/// rounding; `None` where it holds them.
+/// The motion in which contacts whose friction exceeds the cone by more than rounding begin to slip; `None`
+/// if there are none.
 pub(super) fn beyond(problem: &Problem<'_>, found: &Solution) -> Option<Solution> {
     let middle = with_modes_near(problem, &found.modes, Some(&found.force)).ok()?;
     if middle.margin >= -FITS {

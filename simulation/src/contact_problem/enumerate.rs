@@ -1,6 +1,6 @@
 //! All solutions of few contacts, mode by mode.
 //!
-//! Of contacts that do not slip each may separate, stick or begin to slip. Where none begins to slip the equations are
+//! A contact without slip may separate, stick or begin to slip. If none begins to slip, the equations are
 //! linear. The directions in which contacts begin to slip follow from equations in their angles alone.
 //!
 //! Theory: docs/theory.md, section 17.10.
@@ -14,18 +14,20 @@ use super::{
     motion::centred,
 };
 
-/// Every motion that the laws allow at most [`MOST_ENUMERATED`] contacts, each with forces, the most resting first; of
-/// more contacts, or of a problem that is not one, none.
+/// All motions of at most [`MOST_ENUMERATED`] contacts that the laws allow, each with forces, the one with
+/// most contacts at rest first; empty for more contacts, or for an invalid problem.
 ///
-/// Where no or one contact begins to slip no solution is missed. Directions of more are looked for from a grid. Forces
-/// of one motion count once: they are the ones of [`with_modes`](super::with_modes).
+/// If at most one contact begins to slip, no solution is missed. Directions of several contacts are sought
+/// from a grid. Different forces with the same motion count as one solution; the forces are those of
+/// [`with_modes`](super::with_modes).
 pub fn enumerate(problem: &Problem<'_>) -> Vec<Solution> {
     let k = problem.contacts();
     if k > MOST_ENUMERATED || problem.check().is_err() {
         return Vec::new();
     }
     let mut found: Vec<Solution> = Vec::new();
-    // Where contacts share their load in many ways as they begin to slip there are many motions: this is one of them.
+    // If contacts can share their load in many ways as they begin to slip, there are many motions; this is
+    // one of them.
     if let Ok(first) = attempt(problem, None) {
         found.push(centred(problem, first));
     }
@@ -66,7 +68,7 @@ fn choices(problem: &Problem<'_>, i: usize) -> Vec<Choice> {
     }
 }
 
-/// The choice with all directions in which those that begin to slip may do so.
+/// The modes for a choice, with all possible directions of the contacts that begin to slip.
 fn ways(problem: &Problem<'_>, chosen: &[Choice]) -> Vec<Vec<Mode>> {
     let open: Vec<usize> = (0..chosen.len()).filter(|&i| chosen[i] == Choice::Begin).collect();
     let with = |found: &[Vector2<f64>]| {
@@ -93,5 +95,5 @@ fn accept(problem: &Problem<'_>, wanted: &[Mode], found: &mut Vec<Solution>) {
     }
 }
 
-/// Accelerations that differ by less beside the greatest one are one motion.
+/// Two motions are the same if their accelerations differ by less than this part of the greatest one.
 const SAME: f64 = 1e-8;

@@ -1,4 +1,4 @@
-//! Gaussian elimination with pivots from the whole matrix, which shows the rank.
+//! Gaussian elimination with complete pivoting, which reveals the rank.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -6,10 +6,10 @@ use std::ops::{Deref, DerefMut};
 
 use nalgebra::DMatrix;
 
-/// So many unknowns are eliminated in memory on the stack: four contacts that stick.
-const FEW: usize = 12;
+/// Systems with at most this many unknowns are stored on the stack: four contacts that stick.
+pub(super) const FEW: usize = 12;
 
-/// Numbers on the stack, or on the heap where they are many.
+/// Numbers on the stack, or on the heap if there are many.
 #[derive(Clone)]
 pub(super) enum Numbers<const MOST: usize> {
     Few([f64; MOST], usize),
@@ -67,7 +67,7 @@ pub(super) fn residual(matrix: &Square, x: &Vector, right: &Vector) -> Vector {
 /// P A Q = L U up to the rank.
 pub(super) struct Elimination {
     lu: Square,
-    /// the rows and columns that stand in each place, as numbers
+    /// row and column at each place after pivoting
     rows: Vector,
     columns: Vector,
     n: usize,
@@ -75,7 +75,7 @@ pub(super) struct Elimination {
 }
 
 impl Elimination {
-    /// Of a matrix by columns; pivots up to `singular` times the first one count as zero.
+    /// Eliminates a matrix given by columns; pivots up to `singular` times the first one count as zero.
     pub fn new(mut lu: Square, n: usize, singular: f64) -> Self {
         let (mut rows, mut columns) = (vector(n, |i| i as f64), vector(n, |i| i as f64));
         let mut rank = 0;
@@ -128,7 +128,7 @@ impl Elimination {
         self.lu[column * self.n + row]
     }
 
-    /// The x with as many zeros as the rank leaves that solves the first equations, as many as the rank.
+    /// A solution x of the first equations up to the rank, with as many zeros as possible.
     pub fn solve(&self, right: &[f64]) -> Vector {
         let r = self.rank;
         let mut y = vector(r, |i| right[self.rows[i] as usize]);
@@ -146,7 +146,7 @@ impl Elimination {
         x
     }
 
-    /// U^-1 on the first entries, as many as the rank.
+    /// U^-1 applied to the first entries up to the rank.
     fn back(&self, y: &mut [f64]) {
         for j in (0..self.rank).rev() {
             y[j] /= self.entry(j, j);
@@ -157,7 +157,7 @@ impl Elimination {
         }
     }
 
-    /// An orthonormal basis of the x with A x = 0, in columns.
+    /// An orthonormal basis of the null space of A, by columns.
     pub fn null_space(&self) -> DMatrix<f64> {
         let (n, r) = (self.n, self.rank);
         let mut basis = DMatrix::zeros(n, n - r);
@@ -174,7 +174,7 @@ impl Elimination {
     }
 }
 
-/// Gram and Schmidt's method, twice.
+/// The Gram-Schmidt method, applied twice.
 fn orthonormal(basis: &mut DMatrix<f64>) {
     for j in 0..basis.ncols() {
         for _ in 0..2 {

@@ -10,10 +10,11 @@
 //! * [`solve`] finds forces and proves them by a certificate, or refuses.
 //! * [`with_modes`] computes the forces of modes that are known; where many forces give the same motion, the
 //!   analytic centre of those that the laws allow. [`rest`] asks whether nothing needs to begin to slip.
-//! * [`enumerate`] lists the solutions of few contacts in all modes.
+//! * [`enumerate`] lists the solutions of few contacts in all modes; of more, [`another`] looks for one other.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+mod another;
 mod centre;
 mod certified;
 mod common_slip;
@@ -31,6 +32,7 @@ mod sparse;
 mod squares;
 
 pub use self::{
+    another::another,
     certified::certificate,
     directions::MOST_ENUMERATED,
     enumerate::enumerate,

@@ -1,5 +1,6 @@
-//! One motion among many: where contacts that begin to slip share their load in many ways, each has another friction
-//! and so another motion. The one is taken whose forces are the centre for its own directions of slip.
+//! Selects one motion among many: if contacts that begin to slip can share their load in many ways, each way
+//! has other friction and hence another motion. The motion whose forces are the analytic centre for its own
+//! directions of slip is selected.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -12,7 +13,7 @@ use super::{
     prescribed::{Admissible, with_modes_near},
 };
 
-/// The solution with the forces that its modes prescribe, where these obey the laws as well.
+/// The solution with the forces that its modes prescribe, if these obey the laws as well.
 pub(super) fn centred(problem: &Problem<'_>, found: Solution) -> Solution {
     let like =
         |solution: &Solution| solution.modes.iter().zip(&found.modes).all(|(one, other)| one.is_like(other));
@@ -28,8 +29,8 @@ pub(super) fn centred(problem: &Problem<'_>, found: Solution) -> Solution {
     with_certificate(problem, &found.modes).filter(like).unwrap_or(found)
 }
 
-/// The modes of a solution with directions in which the contacts slip under the centre of the forces that these
-/// directions allow; `None` where forces are unique or the directions do not settle.
+/// The modes of a solution, with directions in which the contacts slip under the analytic centre of the
+/// forces for these directions; `None` if the forces are unique or the iteration does not converge.
 fn settled(problem: &Problem<'_>, found: &Solution, open: &[usize]) -> Option<Vec<Mode>> {
     let first = with_modes_near(problem, &found.modes, Some(&found.force)).ok()?;
     if first.unique {
@@ -38,7 +39,7 @@ fn settled(problem: &Problem<'_>, found: &Solution, open: &[usize]) -> Option<Ve
     settle(problem, found.modes.clone(), open, first.force)
 }
 
-/// Modes whose directions are turned until each contact slips along its own acceleration.
+/// Modes whose directions are changed until each contact slips along its own acceleration.
 pub(super) fn settle(
     problem: &Problem<'_>,
     mut modes: Vec<Mode>,
@@ -59,7 +60,8 @@ pub(super) fn settle(
             return Some(modes);
         }
         last = greatest;
-        // Newton's method, with differences; of many contacts each direction follows its own slip.
+        // Newton's method with finite differences; for many contacts each direction is set to that of its own
+        // slip.
         let step = if open.len() <= MOST {
             let mut rates = DMatrix::zeros(open.len(), open.len());
             for j in 0..open.len() {
@@ -80,7 +82,8 @@ pub(super) fn settle(
     None
 }
 
-/// Whether contacts slip with so small accelerations that differences of forces do not tell their directions.
+/// Whether contacts slip with such small accelerations that their directions cannot be computed from
+/// differences of forces.
 pub(crate) fn is_slow(problem: &Problem<'_>, modes: &[Mode], open: &[usize], force: &DVector<f64>) -> bool {
     let acceleration = problem.w * force + problem.beta;
     let along = |&i: &usize| match modes[i] {

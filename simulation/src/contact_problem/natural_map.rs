@@ -1,14 +1,16 @@
-//! How far forces are from a solution, by a map that shares nothing with the method which finds them.
+//! The distance of forces from a solution, by a map that is independent of the method that finds them.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+use hodograph::generated::hypot;
 use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::{Problem, problem::three};
 
-/// The greatest distance of a contact from a solution, r - P(r - rho (v + mu abs(v_tan) n)), over rho and over the greatest
-/// component of beta and v: P is the projection on Coulomb's cone, 1 / rho the greatest eigenvalue of the contact's block
-/// of W. Of a contact that slips along d the distance of r_tan from -mu r_n d is taken.
+/// The greatest distance of a contact from a solution, r - P(r - rho (v + mu abs(v_tan) n)), divided by rho
+/// and by the greatest component of beta and v. P is the projection onto Coulomb's cone, 1 / rho the greatest
+/// eigenvalue of the contact's block of W. For a contact that slips along d it is the distance of r_tan from
+/// -mu r_n d.
 pub fn natural_residual(problem: &Problem<'_>, force: &DVector<f64>) -> f64 {
     let velocity = problem.w * force + problem.beta;
     let greatest = problem.beta.amax().max(velocity.amax());
@@ -20,7 +22,7 @@ pub fn natural_residual(problem: &Problem<'_>, force: &DVector<f64>) -> f64 {
         let rho = if stiffest > 0.0 { 1.0 / stiffest } else { 1.0 };
         let distance = match problem.slip[i] {
             None => {
-                let saxce = v + Vector3::x() * (mu * v.y.hypot(v.z));
+                let saxce = v + Vector3::x() * (mu * hypot(v.y, v.z));
                 r - onto_cone(&(r - saxce * rho), mu)
             }
             Some(d) => {
@@ -33,9 +35,9 @@ pub fn natural_residual(problem: &Problem<'_>, force: &DVector<f64>) -> f64 {
     if greatest > 0.0 { worst / greatest } else { worst }
 }
 
-/// The point of Coulomb's cone next to `z`.
+/// The projection of `z` onto Coulomb's cone.
 fn onto_cone(z: &Vector3<f64>, mu: f64) -> Vector3<f64> {
-    let size = z.y.hypot(z.z);
+    let size = hypot(z.y, z.z);
     if size <= mu * z.x {
         return *z;
     }

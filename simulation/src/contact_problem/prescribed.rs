@@ -2,34 +2,37 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+use hodograph::generated::hypot;
 use nalgebra::{DVector, Vector3};
+use smallvec::SmallVec;
 
 use super::{
     Mode, Problem, Unsolved,
     centre::{By, centre},
     cone::{Cone, least_reserve},
-    linear::{Elimination, Square, Vector, residual, vector},
+    linear::{Elimination, FEW, Square, Vector, residual, vector},
     problem::three,
 };
 
-/// Forces under which contacts keep their modes, as far as these can be kept.
+/// Forces under which contacts keep their modes, as far as possible.
 #[derive(Clone, Debug)]
 pub struct Admissible {
-    /// lambda, n, t, s of each contact. Where several forces give the same motion, the analytic centre of those
-    /// that the laws allow; where the laws allow none, the ones that miss them least.
+    /// lambda, n, t, s of each contact. If several forces give the same motion, the analytic centre of those
+    /// that the laws allow; if the laws allow none, those with the least violation.
     pub force: DVector<f64>,
     /// W lambda + beta
     pub acceleration: DVector<f64>,
-    /// By how much all normal forces could be less with enough friction left, beside the size of all forces:
-    /// the least lambda_n - abs(lambda_tan) / mu over the contacts, each in units of its own mass. It is positive
-    /// exactly if forces within all cones exist, and negative if none exist.
+    /// By how much all normal forces could decrease before friction is exhausted, relative to the size of all
+    /// forces: the least lambda_n - abs(lambda_tan) / mu over the contacts, each in units of its own mass. It
+    /// is positive exactly if there are forces inside all cones, and negative if there are none.
     pub margin: f64,
     /// The contact with the least reserve.
     pub least: Option<usize>,
-    /// Whether no other forces give this motion.
+    /// Whether the forces are the only ones with this motion.
     pub unique: bool,
-    /// The least f over sliding contacts: the rate of a_n by lambda_n of one contact while all others keep their
-    /// modes, over its W_nn. At zero the contact jams. 1 without sliding contacts.
+    /// The least f over sliding contacts: the derivative of a_n with respect to lambda_n of one contact while
+    /// all others keep their modes, divided by its W_nn. At zero the contact jams. 1 without sliding
+    /// contacts.
     pub f: f64,
     /// The contact with that f.
     pub jams: Option<usize>,
@@ -38,22 +41,23 @@ pub struct Admissible {
 /// Why contacts cannot keep their modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Impossible {
-    /// The problem is not one.
+    /// The problem is invalid.
     Problem(Unsolved),
-    /// No forces, whatever friction allows, cancel this acceleration of a contact.
+    /// No forces, even without the bounds of friction, cancel this acceleration of a contact.
     NoForces {
         /// The contact.
         contact: usize,
-        /// What is left, over its terms.
+        /// The remaining acceleration, relative to its terms.
         left: f64,
     },
 }
 
-/// Pivots up to this times the first one count as zero, in units in which each contact has W_ii of trace one.
+/// Pivots up to this times the first one count as zero, in units in which W_ii of each contact has the trace
+/// one.
 pub(super) const SINGULAR: f64 = 1e-9;
 
-/// Accelerations that forces should cancel may be left in this ratio to their terms: that of a pivot which counted
-/// as zero and should not.
+/// Accelerations that forces should cancel may remain up to this part of their terms; this allows for a pivot
+/// that counted as zero and should not have.
 const INCONSISTENT: f64 = 1e-6;
 
 /// The forces of contacts in these modes.
@@ -64,7 +68,7 @@ pub fn with_modes(problem: &Problem<'_>, modes: &[Mode]) -> Result<Admissible, I
     with_modes_near(problem, modes, None)
 }
 
-/// As [`with_modes`], from forces that are nearly the answer, which only save work.
+/// Like [`with_modes`], but starting from approximate forces, which only saves work.
 ///
 /// # Errors
 /// See [`Impossible`].
@@ -76,18 +80,18 @@ pub fn with_modes_near(
     prescribed(problem, modes, guess, Wanted::Centre)
 }
 
-/// Which of many forces for one motion are wanted.
+/// The choice among many forces for one motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Those in the middle.
+    /// The analytic centre.
     Centre,
-    /// Those in the middle if these modes fit, else any.
+    /// The analytic centre if these modes are admissible, else any.
     Decision,
-    /// Any, where all of them move the contacts and the mechanism alike: where nothing slips.
+    /// Any forces if all give the same motion, that is, if no contact slips.
     Motion,
 }
 
-/// As [`with_modes_near`], for the forces that are wanted.
+/// Like [`with_modes_near`], with a choice of forces.
 pub(super) fn prescribed(
     problem: &Problem<'_>,
     modes: &[Mode],
@@ -102,7 +106,7 @@ pub(super) fn prescribed(
     found(problem, modes, guess, wanted)
 }
 
-/// The same of a problem that is known to be one.
+/// The same for a problem that has been checked.
 pub(crate) fn found(
     problem: &Problem<'_>,
     modes: &[Mode],
@@ -154,23 +158,23 @@ pub(crate) fn found(
     Ok(Admissible { force, acceleration, margin, least, unique, f, jams })
 }
 
-/// Whether all contacts that do not slip may go on sticking while those that slip go on slipping, and the forces
-/// with which they do.
+/// Whether all contacts without slip can stick while those that slip continue to slip, and the forces of this
+/// motion.
 pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     let modes: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
     let found = prescribed(problem, &modes, None, Wanted::Decision).ok()?;
     (found.margin >= -FITS && found.f > 0.0 && held(problem, &modes, &found.acceleration)).then_some(found)
 }
 
-/// A margin fits from minus this on.
+/// A margin is satisfied if it is at least minus this.
 pub(super) const FITS: f64 = 1e-13;
 
-/// Whether the contacts without friction, which nothing holds, do not begin to slip.
+/// Whether the contacts without friction, which nothing prevents from slipping, do not begin to slip.
 fn held(problem: &Problem<'_>, modes: &[Mode], acceleration: &DVector<f64>) -> bool {
     let size = acceleration_scale(problem);
     modes.iter().enumerate().all(|(i, mode)| {
         let a = three(acceleration, i);
-        !matches!(mode, Mode::Stick) || a.y.hypot(a.z) <= 1e-9 * size[i] + problem.noise(3 * i + 1)
+        !matches!(mode, Mode::Stick) || hypot(a.y, a.z) <= 1e-9 * size[i] + problem.noise(3 * i + 1)
     })
 }
 
@@ -181,22 +185,22 @@ fn acceleration_scale(problem: &Problem<'_>) -> Vec<f64> {
     (0..problem.contacts()).map(|i| scaled / problem.scale(i)).collect()
 }
 
-/// One unknown: a normal force with its friction, or a component of friction.
+/// An unknown: a normal force with its friction, or a component of friction.
 struct Unknown {
     contact: usize,
     axis: usize,
-    /// The force that it stands for.
+    /// The force of a unit of the unknown.
     along: Vector3<f64>,
     scale: f64,
 }
 
 struct Unknowns {
-    list: Vec<Unknown>,
+    list: SmallVec<[Unknown; FEW]>,
 }
 
 impl Unknowns {
     fn new(problem: &Problem<'_>, modes: &[Mode]) -> Self {
-        let mut list = Vec::with_capacity(3 * modes.len());
+        let mut list = SmallVec::with_capacity(3 * modes.len());
         for (contact, mode) in modes.iter().enumerate() {
             let (mu, scale) = (problem.mu[contact], problem.scale(contact));
             let mut add =
@@ -226,26 +230,26 @@ impl Unknowns {
     }
 
     fn matrix(&self, problem: &Problem<'_>) -> Square {
-        let m = self.list.len();
-        let entry = |a: usize, b: usize| {
-            let (row, from) = (self.row(a), &self.list[b]);
-            let factor = self.list[a].scale * from.scale;
-            let w = |axis: usize| problem.w[(row, 3 * from.contact + axis)];
-            if from.axis > 0 {
-                return factor * w(from.axis);
-            }
-            let mut sum = w(0);
-            if from.along.y != 0.0 {
-                sum += from.along.y * w(1);
-            }
-            if from.along.z != 0.0 {
-                sum += from.along.z * w(2);
-            }
-            factor * sum
-        };
+        let (m, n) = (self.list.len(), problem.w.nrows());
+        let w = problem.w.as_slice();
+        let column_of = |from: &Unknown, axis: usize| &w[n * (3 * from.contact + axis)..][..n];
         let mut matrix = Square::zeros(m * m);
-        for (b, column) in matrix.chunks_exact_mut(m.max(1)).enumerate() {
-            column.iter_mut().enumerate().for_each(|(a, value)| *value = entry(a, b));
+        for (from, column) in self.list.iter().zip(matrix.chunks_exact_mut(m.max(1))) {
+            let own = column_of(from, from.axis);
+            for (value, to) in column.iter_mut().zip(&self.list) {
+                *value = own[3 * to.contact + to.axis];
+            }
+            for (axis, share) in [(1, from.along.y), (2, from.along.z)] {
+                if from.axis == 0 && share != 0.0 {
+                    let across = column_of(from, axis);
+                    for (value, to) in column.iter_mut().zip(&self.list) {
+                        *value += share * across[3 * to.contact + to.axis];
+                    }
+                }
+            }
+            for (value, to) in column.iter_mut().zip(&self.list) {
+                *value *= to.scale * from.scale;
+            }
         }
         matrix
     }
@@ -255,7 +259,7 @@ impl Unknowns {
         DVector::from_fn(self.list.len(), |a, _| force[self.row(a)] / self.list[a].scale)
     }
 
-    /// The forces, and the accelerations that they cause.
+    /// The forces and the accelerations that they cause.
     fn motion(&self, problem: &Problem<'_>, x: &[f64]) -> (DVector<f64>, DVector<f64>) {
         let mut force = DVector::zeros(3 * problem.contacts());
         for (unknown, x) in self.list.iter().zip(x.iter()) {
@@ -266,13 +270,13 @@ impl Unknowns {
         }
         let mut acceleration = problem.beta.clone();
         for (column, force) in problem.w.as_slice().chunks_exact(force.len().max(1)).zip(force.iter()) {
-            acceleration.iter_mut().zip(column).for_each(|(a, w)| *a += w * force);
+            acceleration.as_mut_slice().iter_mut().zip(column).for_each(|(a, w)| *a += w * force);
         }
         (force, acceleration)
     }
 
-    fn cones(&self, problem: &Problem<'_>) -> Vec<Cone> {
-        let mut cones = Vec::with_capacity(self.list.len());
+    fn cones(&self, problem: &Problem<'_>) -> SmallVec<[Cone; FEW]> {
+        let mut cones = SmallVec::new();
         for (place, unknown) in self.list.iter().enumerate() {
             if unknown.axis == 0 {
                 let sticks = self.list.get(place + 1).is_some_and(|next| next.axis == 1);
@@ -283,7 +287,7 @@ impl Unknowns {
         cones
     }
 
-    /// Whether the equations beyond the rank hold.
+    /// Whether the equations beyond the rank are satisfied.
     fn consistent(
         &self,
         problem: &Problem<'_>,

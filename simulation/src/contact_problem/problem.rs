@@ -1,11 +1,11 @@
-//! The problem of k contacts, its solutions, and why there may be none.
+//! The problem of k contacts, its solutions, and the reasons why there may be none.
 
 use std::fmt;
 
 use hodograph::several::Certificate;
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
-/// k contacts whose forces are sought. The unit of lambda times that of W is that of beta.
+/// A problem of k contacts whose forces are unknown. The unit of lambda times that of W is that of beta.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
     /// W, 3 k x 3 k, (n, t, s) of each contact; positive semidefinite, perhaps singular, and symmetric but for
@@ -17,7 +17,7 @@ pub struct Problem<'a> {
     pub mu: &'a [f64],
     /// The direction of slip (t, s) of each contact, of length one; `None` without slip.
     pub slip: &'a [Option<Vector2<f64>>],
-    /// The rounding errors of the components of beta: accelerations below them count as zero.
+    /// Bounds of the rounding errors of the components of beta: accelerations below them count as zero.
     pub noise: Option<&'a DVector<f64>>,
 }
 
@@ -53,49 +53,50 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// Whether some contact has the normal force of another one (docs/theory.md, section 17.17): it acts on nothing else.
+    /// Whether some contact shares the normal force of another one (docs/theory.md, section 17.17) and has no
+    /// effect besides.
     pub(super) fn shares_normal_forces(&self) -> bool {
         let k = self.contacts();
         let shares = |i: usize, j: usize| self.w[(3 * i, 3 * j)] != 0.0 && self.w[(3 * j, 3 * i)] == 0.0;
         (0..k).any(|i| (0..i).any(|j| shares(i, j)))
     }
 
-    /// Rounding of a component of beta.
+    /// The rounding error of a component of beta.
     pub(super) fn noise(&self, row: usize) -> f64 {
         self.noise.map_or(0.0, |noise| noise[row])
     }
 
-    /// A component of beta, zero where it is rounding.
+    /// A component of beta; zero if it is below its rounding error.
     pub(super) fn pull(&self, row: usize) -> f64 {
         if self.beta[row].abs() <= self.noise(row) { 0.0 } else { self.beta[row] }
     }
 
-    /// s_i, about tr(W_ii)^(-1/2): lambda = s x and a = v / s have the same laws.
+    /// The scale s_i, about tr(W_ii)^(-1/2): lambda = s x and a = v / s obey the same laws.
     pub(super) fn scale(&self, i: usize) -> f64 {
         let trace: f64 = (3 * i..3 * i + 3).map(|row| self.w[(row, row)]).sum();
         if trace <= 0.0 {
             return 1.0;
         }
         let scale = 1.0 / trace.sqrt();
-        // A power of two adds no rounding errors.
+        // A power of two causes no rounding errors.
         let power = f64::from_bits(scale.to_bits() & (0x7ff << 52));
         if power > 0.0 { power } else { scale }
     }
 }
 
-/// What a contact does.
+/// The mode of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mode {
-    /// It opens: no force.
+    /// It separates: no force.
     Separate,
-    /// It does not slip, and does not begin to.
+    /// It sticks: no slip, and no beginning of slip.
     Stick,
     /// It slips, or begins to slip, along a direction (t, s) of length one.
     Slide(Vector2<f64>),
 }
 
 impl Mode {
-    /// A stable lower-case name.
+    /// The name of the mode: lower case, and stable between versions.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Separate => "separate",
@@ -113,16 +114,16 @@ impl Mode {
 /// How many solutions a problem has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solutions {
-    /// No other one fits.
+    /// The solution is the only one.
     Unique,
-    /// Others fit in other modes.
+    /// There are solutions in other modes.
     Several,
-    /// Nobody looked, or there are too many contacts to look.
+    /// Unknown: not examined, or too many contacts.
     Unknown,
 }
 
 impl Solutions {
-    /// A stable lower-case name.
+    /// The name: lower case, and stable between versions.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Unique => "unique",
@@ -139,33 +140,33 @@ pub struct Solution {
     pub force: DVector<f64>,
     /// W lambda + beta
     pub acceleration: DVector<f64>,
-    /// What each contact does.
+    /// The mode of each contact.
     pub modes: Vec<Mode>,
     /// The greatest violation of each law, relative to its terms.
     pub certificate: Certificate<f64>,
-    /// How many solutions there are in distinct modes.
+    /// Whether there are solutions in other modes.
     pub solutions: Solutions,
 }
 
-/// Why there are no forces.
+/// Why no forces are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unsolved {
-    /// The matrix, the vectors and the lists do not belong to one number of contacts.
+    /// The sizes of the matrix, the vectors and the lists do not fit one number of contacts.
     Lengths,
     /// A number is not finite, or mu or a diagonal entry of W is negative.
     Input {
-        /// The contact at fault.
+        /// The invalid contact.
         contact: usize,
     },
-    /// No forces are known to exist: friction of this contact, which slips, brings the bodies together by more
-    /// than its normal force parts them.
+    /// The existence of forces is not known: friction of this sliding contact accelerates the bodies towards
+    /// each other more than its normal force separates them (jam).
     Jam {
         /// The contact that jams.
         contact: usize,
-        /// f of it alone, W_nn - mu W_nT d.
+        /// f of this contact alone, W_nn - mu W_nT d.
         f: f64,
     },
-    /// No forces were found whose certificate is accepted.
+    /// No forces with an acceptable certificate were found.
     NotFound {
         /// The least violation that was reached.
         violation: f64,

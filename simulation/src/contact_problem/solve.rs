@@ -1,4 +1,4 @@
-//! Forces of contacts whose modes are not known.
+//! Forces of contacts with unknown modes.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -12,9 +12,9 @@ use super::{
     motion::centred,
 };
 
-/// Forces that obey the laws, with modes and certificate. Where all contacts that do not slip may go on sticking, they
-/// do. Among many forces for one motion the analytic centre is taken. `guess` saves work, and chooses among several
-/// motions that are not rest.
+/// Forces that obey the laws, with modes and a certificate. If all contacts without slip can stick, they do.
+/// Among many forces for one motion the analytic centre is taken. `guess` saves work, and selects among
+/// several motions other than rest.
 ///
 /// # Errors
 /// See [`Unsolved`]. Forces that violate a law by more than 1e-12 of its terms are never returned.
@@ -41,7 +41,7 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
     }
 }
 
-/// f of a contact that slides, alone.
+/// f of a sliding contact by itself.
 fn own_f(problem: &Problem<'_>, i: usize) -> Option<f64> {
     let d = problem.slip[i]?;
     let row = 3 * i;
@@ -51,7 +51,7 @@ fn own_f(problem: &Problem<'_>, i: usize) -> Option<f64> {
     )
 }
 
-/// The contact that slides with the least f, if that is not positive.
+/// The sliding contact with the least f, if that is not positive.
 fn jammed(problem: &Problem<'_>) -> Option<usize> {
     let ratio = |i: usize| own_f(problem, i).map(|f| f / problem.w[(3 * i, 3 * i)]);
     (0..problem.contacts())
@@ -59,5 +59,6 @@ fn jammed(problem: &Problem<'_>) -> Option<usize> {
         .min_by(|&a, &b| ratio(a).unwrap_or(1.0).total_cmp(&ratio(b).unwrap_or(1.0)))
 }
 
-/// Up to so many contacts rest is looked for first, and the centre of forces that are not unique is taken.
+/// Up to this number of contacts, rest is tried first, and the analytic centre of forces that are not unique
+/// is taken.
 const CENTRED: usize = 48;

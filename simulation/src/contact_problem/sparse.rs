@@ -1,18 +1,19 @@
-//! Steps of Newton's method for many contacts, each of which touches few others: elimination by 3 x 3 blocks.
+//! Newton steps for many contacts, each of which touches few others: elimination by 3 x 3 blocks.
 //!
-//! Contacts are eliminated in the order of least degree, with pivots in their own blocks only: the matrix is nearly that
-//! of a positive definite one. Each solution is refined, and refused where that does not help.
+//! Contacts are eliminated in the order of minimum degree, with pivots in their own blocks only, since the
+//! matrix is nearly positive definite. Each solution is refined, and rejected if refinement does not
+//! converge.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
 use hodograph::several::{NewtonSteps, Scaled};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-/// The places that an elimination fills, and memory for its numbers.
+/// The fill-in pattern of an elimination, and storage for its numbers.
 pub(super) struct Sparse {
     /// The contacts in the order of their elimination, and the place of each in it.
     order: Vec<usize>,
-    /// For each step the later steps that it changes, rising.
+    /// For each step the later steps that it changes, increasing.
     fronts: Vec<Vec<usize>>,
     /// The entries of W next to each contact in the order of steps: (step, step) with blocks that are not zero.
     entries: Vec<(usize, usize)>,
@@ -23,7 +24,7 @@ pub(super) struct Sparse {
 }
 
 impl Sparse {
-    /// `None` where the elimination would fill more than half of the matrix.
+    /// `None` if the elimination would fill more than half of the matrix.
     pub fn new(w: &DMatrix<f64>) -> Option<Self> {
         let k = w.nrows() / 3;
         let touches = |i: usize, j: usize| {
@@ -140,7 +141,7 @@ impl Sparse {
         true
     }
 
-    /// Replaces the right side, in the order of the contacts.
+    /// Solves the system in place of the right side, in the order of the contacts.
     fn solve(&self, right: &mut [f64]) {
         let at = |step: usize| 3 * self.order[step];
         let read = |right: &[f64], step: usize| Vector3::from_column_slice(&right[at(step)..at(step) + 3]);
@@ -201,5 +202,5 @@ impl NewtonSteps<f64> for Sparse {
     }
 }
 
-/// Refinements of one solution.
+/// Number of refinements of a solution.
 const REFINED: usize = 2;

@@ -1,4 +1,4 @@
-//! Steps of Newton's method for the barrier of many cones, by least squares.
+//! Newton steps for the barrier of many cones, by least squares.
 //!
 //! With u_n = n and abs(u_tan) = a the barrier of a cone is -ln(n - a) - ln(n + a), and its Hessian a sum of three squares:
 //!
@@ -6,12 +6,13 @@
 //! g1 g1^T / (n - a)^2 + g2 g2^T / (n + a)^2 + 2 / (n^2 - a^2) t t^T,     g1, g2 = (1, -+u_tan / a), t across u_tan,
 //! ```
 //!
-//! without the differences of large terms in which rows and columns of the Hessian would lose what is along the cone.
-//! So the Hessian is J^T J with the rows J of these squares, and steps follow from J by orthogonal transformations,
-//! which see 1 / (n - a) and not its square.
+//! This form avoids the differences of large terms in which the Hessian would lose its components along the
+//! cone. The Hessian is J^T J with the rows J of these squares, and steps are computed from J by orthogonal
+//! transformations, whose errors depend on 1 / (n - a) and not on its square.
 //!
 //! Theory: docs/theory.md, section 17.17.
 
+use hodograph::generated::hypot;
 use nalgebra::{DMatrix, DVector};
 
 use super::cone::Cone;
@@ -22,7 +23,7 @@ pub(super) struct Squares {
 }
 
 impl Squares {
-    /// The barrier of the cones lessened by `s`, and the square of the forces; the last variable is s.
+    /// The barrier of the cones reduced by `s`, and the square of the forces; the last variable is s.
     pub fn new(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s: f64) -> Self {
         let p = basis.ncols();
         let mut rows = Vec::new();
@@ -43,7 +44,7 @@ impl Squares {
                 continue;
             };
             let (ut, us) = (factor * x[t], factor * x[r]);
-            let a = ut.hypot(us);
+            let a = hypot(ut, us);
             let (dt, ds) = if a > 0.0 { (ut / a, us / a) } else { (1.0, 0.0) };
             for (size, sign) in [(n - a, -1.0), (n + a, 1.0)] {
                 let along = sign * factor / size;
@@ -61,7 +62,7 @@ impl Squares {
         Self { rows }
     }
 
-    /// One more square, of s alone.
+    /// Adds a square that depends on s alone.
     pub fn add(&mut self, by_s: f64, right: f64) {
         let Some((first, _)) = self.rows.first() else { return };
         let mut row = DVector::zeros(first.len());
@@ -69,10 +70,10 @@ impl Squares {
         self.rows.push((row, right));
     }
 
-    /// The step of Newton's method with the rate `along` of the last variable besides, of the first so many variables,
-    /// and its length in the metric of the Hessian.
+    /// The Newton step of the first `variables` variables, with the rate `along` of the last variable, and
+    /// its length in the metric of the Hessian.
     pub fn step(mut self, variables: usize, along: f64) -> Option<(DVector<f64>, f64)> {
-        // Great rows first: then none is lost beside another.
+        // Large rows first, so that small ones keep their digits.
         self.rows.sort_by(|one, other| other.0.amax().total_cmp(&one.0.amax()));
         let count = self.rows.len();
         let matrix = DMatrix::from_fn(count, variables, |i, j| self.rows[i].0[j]);

@@ -1,5 +1,5 @@
-//! Columns of answers: a struct of named fields for each row. `kind` is `ok`, or says why the other fields
-//! are NULL.
+//! Columns of answers: a struct of named fields for each row. `kind` is `ok`, or the reason why the other
+//! fields are NULL.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub fn fields(collision: bool, numbers: &[String]) -> Fields {
     fields.into()
 }
 
-/// Answers as they are found, row by row.
+/// A builder of answers, row by row.
 pub struct Answers {
     kinds: StringBuilder,
     valid: Vec<bool>,
@@ -44,7 +44,7 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Room for the answers of so many rows with so many numbers each.
+    /// A builder for this number of rows, each with this number of values.
     pub fn new(collision: bool, numbers: usize, rows: usize) -> Self {
         Answers {
             kinds: StringBuilder::with_capacity(rows, 4 * rows),
@@ -55,7 +55,7 @@ impl Answers {
         }
     }
 
-    /// The next row has these numbers; those that are missing are 0.
+    /// Appends a row with these numbers; missing ones are 0.
     pub fn answer(&mut self, course: Option<(Path, u32)>, numbers: impl IntoIterator<Item = f64>) {
         self.kinds.append_value(OK);
         self.valid.push(true);
@@ -68,7 +68,7 @@ impl Answers {
         self.numbers.iter_mut().for_each(|column| column.push(numbers.next().unwrap_or(0.0)));
     }
 
-    /// The next row has no answer.
+    /// Appends a row without an answer.
     pub fn refuse(&mut self, kind: &str) {
         self.kinds.append_value(kind);
         self.valid.push(false);

@@ -1,5 +1,5 @@
-//! The argument of a model's function: columns of coordinates, speeds, inputs, parameters and surfaces, and
-//! what stands in a row.
+//! The argument of a model's function: columns of coordinates, speeds, inputs, parameters and surfaces, read
+//! row by row.
 
 use std::ops::Range;
 
@@ -15,9 +15,9 @@ use super::{UNKNOWN_CONTACT, UNKNOWN_LAW};
 
 /// The columns of a batch.
 pub struct Batch {
-    /// how many rows
+    /// number of rows
     pub rows: usize,
-    /// what the fields of the argument mean
+    /// the places of the fields of the argument
     pub places: Vec<Place>,
     numbers: Vec<Option<Float64Array>>,
     law: Option<StringArray>,
@@ -28,7 +28,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// The columns of a struct, whose fields mean these places.
+    /// The columns of a struct with these places.
     ///
     /// # Errors
     ///
@@ -76,12 +76,12 @@ impl Batch {
         Ok(batch)
     }
 
-    /// The number of a row, where the field is given.
+    /// The number in a row, if the field is given.
     pub fn number(&self, place: Place, row: usize) -> Option<f64> {
         self.given(place).map(|column| column.get(row))
     }
 
-    /// The text of a row, where the field is given.
+    /// The text in a row, if the field is given.
     pub fn text(&self, place: Place, row: usize) -> Option<&str> {
         match place {
             Place::Law => self.law.as_ref().map(|texts| texts.value(row)),
@@ -101,8 +101,7 @@ impl Batch {
         (0..defaults.len()).map(column).collect()
     }
 
-    /// The states of the rows; what is not given is as in the defaults: coordinates, speeds, inputs,
-    /// parameters.
+    /// The states of the rows; missing fields take the defaults: coordinates, speeds, inputs, parameters.
     pub fn table<'a>(&'a self, defaults: &'a [Vec<f64>; 4]) -> Table<'a> {
         let [coordinates, speeds, inputs, _] = defaults;
         Table {
@@ -115,7 +114,7 @@ impl Batch {
         }
     }
 
-    /// The surface of a row; what is not given is as `stated`.
+    /// The surface of a row; missing parts are those of `stated`.
     ///
     /// # Errors
     ///
@@ -147,7 +146,7 @@ impl Batch {
         }
     }
 
-    /// The ends of the stretches of rows with the same parameters, and the parameters of each.
+    /// The ranges of consecutive rows with the same parameters, and the parameters of each.
     pub fn stretches(&self, defaults: &[f64]) -> Vec<(Range<usize>, Vec<f64>)> {
         let columns = self.list(defaults, Place::Parameter);
         let of = |row: usize| columns.iter().map(|column| column.get(row)).collect::<Vec<f64>>();
@@ -185,7 +184,7 @@ impl Row {
         }
     }
 
-    /// The state that was read.
+    /// The state of the row that was read last.
     pub fn state(&self) -> State<'_> {
         let [coordinates, speeds, inputs] = &self.lists;
         State { time: self.time, coordinates, speeds, inputs }

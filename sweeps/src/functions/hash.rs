@@ -1,5 +1,5 @@
-//! `outcome_hash(..)`: 64 bits of the values of a row, the same on every machine. Numbers count by their
-//! bits, text by its bytes, structs by their fields in order; names of fields do not count.
+//! `outcome_hash(..)`: a 64-bit hash of the values of a row, the same on every machine. Numbers are hashed by
+//! their bits, text by its bytes, structs by their fields in order; names of fields are ignored.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
 //! `histogram(x, low, high, bins)`: counts of x in `bins` equal bins, as a list of `bins + 2` integers: below
-//! `low`, the bins, from `high` on. NULL and numbers that are none do not count. Counts of parts add up.
+//! `low`, the bins, from `high` on. NULL and NaN are not counted. Counts of parts add up.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
 use datafusion::logical_expr::utils::{AggregateOrderSensitivity, format_state_name};
 use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, ReversedUDAF, Signature, Volatility};
 
-/// More bins than this are a mistake.
+/// The largest number of bins.
 const MOST: i64 = 1_000_000;
 
 /// The aggregate.

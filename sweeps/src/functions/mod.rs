@@ -1,4 +1,4 @@
-//! The SQL functions, and where engines register them.
+//! The SQL functions, and their registration with engines.
 
 mod answers;
 mod batch;
@@ -21,6 +21,7 @@ use datafusion::arrow::datatypes::DataType;
 use datafusion::common::{Result, internal_err};
 use datafusion::execution::{FunctionRegistry, SessionState};
 use datafusion::logical_expr::{AggregateUDF, ScalarUDF};
+use hodograph::Cause;
 
 pub use answers::{OK, path_name};
 pub use hash::hash_rows;
@@ -28,10 +29,10 @@ pub use model::{ModelFunction, Routine, check_contacts, of_model};
 
 use crate::models::Model;
 
-/// The kind of a row whose law has no such name.
-pub const UNKNOWN_LAW: &str = "unknown_law";
-/// The kind of a row whose contact, which comes with the row, has no such name.
-pub const UNKNOWN_CONTACT: &str = "unknown_contact";
+/// The kind of a row whose law does not exist.
+pub const UNKNOWN_LAW: &str = Cause::UnknownLaw.name();
+/// The kind of a row whose contact, which is a value of the row, does not exist.
+pub const UNKNOWN_CONTACT: &str = Cause::UnknownName.name();
 
 fn is_number(given: &DataType) -> bool {
     given.is_numeric() || given.is_null()
@@ -41,7 +42,7 @@ fn is_text(given: &DataType) -> bool {
     matches!(given, DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View | DataType::Null)
 }
 
-/// An array of so many rows: one of a single row stands for all of them.
+/// An array with this number of rows; an array of a single row is repeated.
 fn of_length(array: &ArrayRef, rows: usize) -> Result<ArrayRef> {
     if array.len() == rows {
         return Ok(Arc::clone(array));
@@ -78,7 +79,7 @@ pub fn aggregate_functions() -> Vec<Arc<AggregateUDF>> {
     ]
 }
 
-/// Registers all functions with a session, beside those that it has.
+/// Registers all functions with a session, in addition to those that it has.
 ///
 /// # Errors
 ///
@@ -93,7 +94,7 @@ pub fn register(state: &mut SessionState, models: &[Arc<Model>]) -> Result<()> {
     Ok(())
 }
 
-/// Registers all functions by name, beside those that are there.
+/// Registers all functions by name, in addition to the existing ones.
 pub fn insert(
     scalar: &mut HashMap<String, Arc<ScalarUDF>>,
     aggregate: &mut HashMap<String, Arc<AggregateUDF>>,

@@ -23,7 +23,7 @@ use super::places::{self, Place};
 use super::simulate;
 use crate::models::Model;
 
-/// What is asked of a mechanism.
+/// The kinds of functions of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Routine {
     /// the collision of a contact
@@ -32,7 +32,7 @@ pub enum Routine {
     Accelerations,
     /// kinetic and potential energy
     Energy,
-    /// what becomes of a motion
+    /// the outcome of a motion
     Simulate,
 }
 
@@ -77,14 +77,14 @@ pub struct ModelFunction {
     prepared: OnceLock<Prepared>,
 }
 
-/// What all batches share.
+/// The data that all batches share.
 #[derive(Debug)]
 struct Prepared {
     known: Vec<(String, Place)>,
-    /// coordinates, speeds, inputs, parameters: what a field that is not given is
+    /// defaults of fields that are not given: coordinates, speeds, inputs, parameters
     defaults: [Vec<f64>; 4],
     contacts: Vec<String>,
-    /// a routine for each contact; none where the contact has no collision
+    /// a routine for each contact; `None` if the contact has no collision
     collisions: Vec<Option<Collisions>>,
     columns: Columns,
 }
@@ -129,7 +129,7 @@ impl ModelFunction {
     ///
     /// # Errors
     ///
-    /// What is wrong with the model.
+    /// The mistake in the model.
     pub fn answer(&self) -> Result<Fields> {
         let mechanism = self.mechanism()?;
         if self.routine == Routine::Simulate {
@@ -155,7 +155,7 @@ impl ModelFunction {
     ///
     /// # Errors
     ///
-    /// What is wrong with the model.
+    /// The mistake in the model.
     pub fn known(&self) -> Result<Vec<(String, Place)>> {
         Ok(self.prepared()?.known.clone())
     }
@@ -188,8 +188,8 @@ impl ModelFunction {
         Ok(places)
     }
 
-    /// Looks at the arguments of a call for a contact that is known when the query is planned: a name that
-    /// stands in the query must be one of the model. Names that come with the rows are answered row by row.
+    /// Checks the contact of a call if it is known when the query is planned: a literal name must be one of
+    /// the model. Names that come with the rows are checked row by row.
     ///
     /// # Errors
     ///
@@ -204,7 +204,7 @@ impl ModelFunction {
             let contacts = &self.prepared()?.contacts;
             if !contacts.iter().any(|known| known == contact) {
                 return plan_err!(
-                    "{} has no contact `{contact}`; the model has {}",
+                    "{}: there is no contact `{contact}`: there are: {}",
                     self.name,
                     contacts.join(", ")
                 );
@@ -214,7 +214,7 @@ impl ModelFunction {
     }
 }
 
-/// The text of an expression that is one.
+/// The text of an expression that is a string literal.
 fn literal(expression: &Expr) -> Option<&str> {
     match expression {
         Expr::Literal(value, _) => value.try_as_str().flatten(),
@@ -226,7 +226,7 @@ fn literal(expression: &Expr) -> Option<&str> {
 ///
 /// # Errors
 ///
-/// Such a name, and what is wrong with a model.
+/// Such a name, or a mistake in a model.
 pub fn check_contacts(plan: &LogicalPlan) -> Result<()> {
     plan.apply_with_subqueries(|node| {
         node.apply_expressions(|expression| {
@@ -243,7 +243,7 @@ pub fn check_contacts(plan: &LogicalPlan) -> Result<()> {
     Ok(())
 }
 
-/// The function of a model, where it is one.
+/// The model function of an SQL function, if it is one.
 pub fn of_model(function: &ScalarUDF) -> Option<&ModelFunction> {
     let any: &dyn std::any::Any = function.inner().as_ref();
     any.downcast_ref()
@@ -302,7 +302,7 @@ fn push(answers: &mut Answers, solved: Solved<'_>) {
 impl ModelFunction {
     fn collide(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
         let (table, mechanism) = (batch.table(&prepared.defaults), self.mechanism()?);
-        // rows that cannot be asked get a refusal in their turn
+        // rows with invalid arguments get their error in order
         let asked = |row: usize| -> Result<(usize, Surface<f64>), &'static str> {
             if !batch.valid[row] {
                 return Err(NULL);

@@ -1,5 +1,5 @@
-//! What the fields of a model function's argument mean: `two_sleds_collide(named_struct('q3', 0.8, 'mu', 0.5,
-//! ..))`.
+//! The places of the fields of a model function's argument: `two_sleds_collide(named_struct('q3', 0.8, 'mu',
+//! 0.5, ..))`.
 
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use datafusion::common::{Result, plan_err};
@@ -8,18 +8,18 @@ use hodograph_interpreter::InterpretedMechanism;
 
 use super::{is_number, is_text};
 
-/// Where a field goes.
+/// The meaning of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// time, s
     Time,
-    /// coordinate of this number
+    /// coordinate with this index
     Coordinate(usize),
-    /// independent speed of this number
+    /// independent speed with this index
     Speed(usize),
-    /// parameter of this number
+    /// parameter with this index
     Parameter(usize),
-    /// named input of this number
+    /// named input with this index
     Input(usize),
     /// coefficient of friction
     Mu,
@@ -29,7 +29,7 @@ pub enum Place {
     Law,
     /// name of the contact
     Contact,
-    /// when a motion ends, s
+    /// final time of a motion, s
     Until,
     /// tolerance of the integration
     Tolerance,
@@ -41,9 +41,9 @@ pub enum Place {
     Rolling,
     /// lever arm of spinning friction, m
     Spinning,
-    /// law of sliding friction, as `stribeck(0.01)`
+    /// law of sliding friction, such as `stribeck(0.01)`
     Sliding,
-    /// law of restitution, as `power(1, 0.25)`
+    /// law of restitution, such as `power(1, 0.25)`
     Restitution,
 }
 
@@ -73,13 +73,13 @@ impl Place {
 const SURFACE: [(&str, Place); 4] =
     [("mu", Place::Mu), ("e", Place::E), ("law", Place::Law), ("contact", Place::Contact)];
 
-/// All fields that a function of this mechanism knows. A component of the model that is called as a field of
-/// the collision, or `time`, has `model_` before its name.
+/// All fields of a function of this mechanism. A component of the model with the name of a field of the
+/// collision, or `time`, gets the prefix `model_`.
 pub fn known(mechanism: &InterpretedMechanism, collision: bool) -> Vec<(String, Place)> {
     known_with(mechanism, if collision { SURFACE.as_slice() } else { &[] })
 }
 
-/// All fields that the motions of this mechanism know.
+/// All fields of the motions of this mechanism.
 pub fn known_of_motions(mechanism: &InterpretedMechanism) -> Vec<(String, Place)> {
     known_with(mechanism, &MOTION)
 }
@@ -110,7 +110,7 @@ fn known_with(mechanism: &InterpretedMechanism, surface: &[(&str, Place)]) -> Ve
 ///
 /// # Errors
 ///
-/// A field that the model does not know, that is there twice, whose type is wrong, or that is missing.
+/// A field is unknown, given twice, of a wrong type, or missing.
 pub fn resolve(
     function: &str,
     mechanism: &InterpretedMechanism,
@@ -119,13 +119,17 @@ pub fn resolve(
     given: &Fields,
 ) -> Result<Vec<Place>> {
     let places = places_of(function, known, given)?;
-    // what is not given is that of the model, where it states the surface of every contact
+    // missing fields are those of the model, if it states the surface of every contact
     let mut contacts = 0..Mechanism::count(mechanism, ComponentKind::Contact);
-    let needed = collision && !contacts.all(|contact| mechanism.surface(contact).is_some());
+    let open = contacts.find(|&contact| collision && mechanism.surface(contact).is_none());
     for (name, place) in SURFACE.iter().take(3) {
-        if needed && !places.contains(place) {
+        if let Some(open) = open
+            && !places.contains(place)
+        {
+            let contact = Mechanism::component(mechanism, ComponentKind::Contact, open);
+            let contact = contact.map_or("", |contact| contact.name);
             return plan_err!(
-                "{function} needs the field `{name}`: a collision has 'mu', 'e' and 'law' ('newton', 'poisson' or 'stronge') unless the model states \
+                "contact {contact} has no surface: {function} needs the field `{name}`: a collision has 'mu', 'e' and 'law' ('newton', 'poisson' or 'stronge') unless the model states \
                  the `surface` of its contacts, and the state where it differs from the initial one of the model"
             );
         }
@@ -137,7 +141,7 @@ pub fn resolve(
 ///
 /// # Errors
 ///
-/// As [`resolve`].
+/// Those of [`resolve`].
 pub fn resolve_motion(function: &str, known: &[(String, Place)], given: &Fields) -> Result<Vec<Place>> {
     let places = places_of(function, known, given)?;
     if !places.contains(&Place::Until) {
@@ -151,7 +155,11 @@ fn places_of(function: &str, known: &[(String, Place)], given: &Fields) -> Resul
     for field in given {
         let Some(&(_, place)) = known.iter().find(|(name, _)| name == field.name()) else {
             let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
-            return plan_err!("{function} has no field `{}`; it has {}", field.name(), names.join(", "));
+            return plan_err!(
+                "{function}: there is no parameter, number of the state or field `{}`: there are: {}",
+                field.name(),
+                names.join(", ")
+            );
         };
         if places.contains(&place) {
             return plan_err!("{function}: the field `{}` is given twice", field.name());

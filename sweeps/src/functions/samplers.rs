@@ -1,6 +1,6 @@
-//! Numbers that depend on the number of the row alone: `uniform(row, dimension, seed)`, `normal(row,
-//! dimension, seed)`, `sobol(row, dimension, seed)` and `linspace(index, low, high, count)`. Any part of a
-//! sweep, on any machine, in any order, gets the same numbers.
+//! Numbers that depend only on the index of the row: `uniform(row, dimension, seed)`, `normal(row, dimension,
+//! seed)`, `sobol(row, dimension, seed)` and `linspace(index, low, high, count)`. Every part of a sweep gets
+//! the same numbers, on any machine and in any order.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use datafusion::logical_expr::{ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl,
 
 use super::hash::mix;
 
-/// So many rows are one scrambled Sobol sequence; the next ones have a seed of their own.
+/// Number of rows of one scrambled Sobol sequence; the next rows have another seed.
 const SEQUENCE: u64 = 1 << 16;
 
 /// Philox 4x32-10 of Salmon et al., *Parallel random numbers: as easy as 1, 2, 3* (2011).
@@ -45,7 +45,7 @@ fn sobol(row: i64, dimension: u32, seed: i64) -> f64 {
     f64::from(sobol_burley::sample((row % SEQUENCE) as u32, dimension, scramble as u32))
 }
 
-/// A number of the standard normal distribution (Box and Muller), by functions that have the same bits on
+/// A number of the standard normal distribution (Box and Muller), with functions that give the same bits on
 /// every machine.
 fn normal(row: i64, dimension: i64, seed: i64) -> f64 {
     let [radius, angle] = pair(row, dimension, seed);
@@ -118,8 +118,8 @@ impl ScalarUDFImpl for Sampler {
     }
 }
 
-/// `linspace(index, low, high, count)`: number `index` of `count` numbers from `low` to `high`, both of them
-/// included.
+/// `linspace(index, low, high, count)`: the number with this index of `count` numbers from `low` to `high`,
+/// both included.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub struct Linspace {
     signature: Signature,
@@ -205,8 +205,7 @@ mod tests {
         near(moments(&|row| sobol(row, 3, 7)), (0.5, 1.0 / 12.0), 1e-4);
     }
 
-    /// What makes the sequence worth its name: each of 256 equal intervals has its share of points, in every
-    /// sequence of its own seed.
+    /// Each of 256 equal intervals contains its share of points, in every sequence.
     #[test]
     fn sobol_points_fill_every_interval_alike() {
         for first in [0, SEQUENCE as i64, 5 * SEQUENCE as i64] {

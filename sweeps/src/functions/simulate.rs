@@ -1,18 +1,16 @@
-//! `<model>_simulate`: what becomes of motions, one for each row.
+//! `<model>_simulate`: the outcomes of motions, one for each row.
 
 use std::sync::Arc;
 
 use datafusion::arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array, StringArray, StructArray};
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use hodograph::{ComponentKind, Contacts as _, Law, Mechanism, State};
-use hodograph_generator::model::mechanism::Law as Stated;
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_interpreter::motion::{GivenSurface, check_tolerance, greatest_step, surfaces};
+use hodograph_interpreter::motion::{GivenSurface, check_tolerance, surfaces};
 use hodograph_simulation::{
     Batch as Many, Case, ContactLaw, ErrorKind, GivenLaw, Options, Outcome, SimulationError, simulate_many,
 };
 
-use super::UNKNOWN_LAW;
 use super::answers::NULL;
 use super::batch::{Batch, Row};
 use super::places::Place;
@@ -26,8 +24,8 @@ fn names(mechanism: &InterpretedMechanism, kind: ComponentKind) -> Vec<&str> {
     (0..Mechanism::count(mechanism, kind)).filter_map(component).collect()
 }
 
-/// The fields of the answer: `kind` is `rest`, `moving`, or says why the motion ended early; `closed` are the names of
-/// the contacts that are closed at the end, joined by `+`.
+/// The fields of the answer: `kind` is `rest`, `moving`, or the reason why the motion ended early; `closed`
+/// are the names of the contacts that are closed at the end, joined by `+`.
 pub fn fields(mechanism: &InterpretedMechanism) -> Fields {
     let mut all = vec![Field::new("kind", DataType::Utf8, false), Field::new("closed", DataType::Utf8, true)];
     all.extend(NUMBERS.map(|name| Field::new(name, DataType::Float64, true)));
@@ -40,7 +38,7 @@ pub fn fields(mechanism: &InterpretedMechanism) -> Fields {
     all.into()
 }
 
-/// An answer, or why there is none.
+/// An answer, or the reason why there is none.
 type Answer = Result<Outcome, &'static str>;
 
 /// The motions of a batch, one after the other: the engine has a batch for each core.
@@ -79,17 +77,14 @@ fn case<'m>(
     row: usize,
     state: &State<'_>,
 ) -> Result<Case<&'m InterpretedMechanism>, SimulationError> {
-    let wrong = |message: String| SimulationError {
-        time: state.time,
-        contact: None,
-        kind: ErrorKind::BadOption(message),
-    };
+    let refused = |kind| SimulationError { time: state.time, contact: None, kind };
+    let wrong = |message: String| refused(ErrorKind::BadOption(message));
     let tolerance = batch.number(Place::Tolerance, row).unwrap_or(Options::default().relative_tolerance);
     check_tolerance(tolerance).map_err(wrong)?;
     let law = batch.text(Place::Law, row);
-    let law = law.map(|name| Law::named(name).ok_or_else(|| wrong(UNKNOWN_LAW.to_owned()))).transpose()?;
+    let law = law.map(Law::read).transpose().map_err(|error| refused(error.into()))?;
     let all = GivenSurface { mu: batch.number(Place::Mu, row), e: batch.number(Place::E, row), law };
-    let all = all.check().map_err(|error| wrong(error.to_string()))?;
+    let all = all.check().map_err(|error| refused(error.into()))?;
     let mut given = GivenLaw {
         mu_static: batch.number(Place::MuStatic, row),
         mu_impact: batch.number(Place::MuImpact, row),
@@ -102,28 +97,25 @@ fn case<'m>(
             given.set(part, text).map_err(wrong)?;
         }
     }
-    // What the columns leave open stands in the model, if at all.
+    // Values that the columns do not give are those of the model.
     let (mut own, mut laws) = (Vec::new(), Vec::new());
-    for (contact, model) in machine.model().contacts.iter().enumerate() {
-        if let Some(stated) = model.surface {
-            let law = match stated.law {
-                Stated::Newton => Law::Newton,
-                Stated::Poisson => Law::Poisson,
-                Stated::Stronge => Law::Stronge,
-            };
-            let stated = GivenSurface { mu: Some(stated.mu), e: Some(stated.e), law: Some(law) };
-            own.push((contact, all.or(stated)));
+    for contact in 0..machine.count(ComponentKind::Contact) {
+        if let Some(stated) = machine.surface(contact) {
+            own.push((contact, all.or(stated.into())));
         }
         let stated = ContactLaw::stated(&machine.stated_law(contact)).map_err(wrong)?;
         laws.push((contact, given.clone().or(stated.into()).law()));
     }
     let surfaces = surfaces(machine, state, all, &own)
-        .map_err(|error| wrong(format!("{error}: give 'mu', 'e' and 'law'")))?
+        .map_err(|error| {
+            let message = format!("{error}: give 'mu', 'e' and 'law'");
+            refused(ErrorKind::Argument { cause: error.cause(), message })
+        })?
         .of_contacts;
     let options = Options {
         relative_tolerance: tolerance,
         absolute_tolerance: tolerance,
-        max_step: greatest_step(machine.program(), false),
+        max_step: machine.greatest_step(false),
         surfaces,
         laws,
         ..Options::default()
@@ -141,7 +133,7 @@ fn case<'m>(
 
 /// The column of structs.
 fn columns(mechanism: &InterpretedMechanism, answers: &[Answer], fields: Fields) -> ArrayRef {
-    // A motion that did not begin has no state, and no numbers.
+    // A motion that did not start has no state.
     let begun =
         |answer: &Answer| answer.as_ref().ok().filter(|outcome| !outcome.coordinates.is_empty()).cloned();
     let begun: Vec<Option<Outcome>> = answers.iter().map(begun).collect();

@@ -14,6 +14,8 @@ pub trait Emitted {
     fn name(&self) -> &'static str;
     /// a routine by its name, if there is one; the error is its message
     fn call(&self, routine: &str, at: &Inputs) -> Option<Result<Vec<f64>, String>>;
+    /// the routines with another one beside them, `.._into`, that writes the answer in place
+    fn in_place(&self) -> &'static [&'static str];
     /// the derivative of a routine along a direction (coordinates, speeds, inputs), by numbers that carry
     /// derivatives
     fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>>;
@@ -56,6 +58,12 @@ pub struct Hit {
     pub contact_work: f64,
     /// work of the normal impulse
     pub normal_work: f64,
+}
+
+/// Another state.
+fn elsewhere(at: &Inputs) -> Inputs {
+    let moved = |list: &[f64]| list.iter().map(|number| number * 0.75 + 0.01).collect();
+    Inputs { coordinates: moved(&at.coordinates), speeds: moved(&at.speeds), ..at.clone() }
 }
 
 /// A list as an array.

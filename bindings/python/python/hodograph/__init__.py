@@ -6,56 +6,50 @@ a first axis they are many states, and so are the answers. What is left out is w
 
 from __future__ import annotations
 
+import os
 import warnings
-from dataclasses import dataclass
-from typing import Optional
+from collections.abc import Sequence
+from typing import Optional, Union
 
 import numpy as np
 
 from . import hodograph_native as _native
+from .arguments import Column, Floats, Rows
+from .description import Contact, Quantity
 from .errors import (
     ArgumentError,
+    ContactError,
     DerivationError,
+    Diagnostic,
     HodographError,
     ImpactError,
     ModelError,
     ParameterError,
-    SimulationError,
     StateError,
 )
-from .mechanism import Contact, Derivatives, Linearisation, Mechanism, NumericMechanism, Quantity
-from .results import Characteristics, Collision, Event, Hodograph, Impact, ImpactDerivative, Simulation, Simulations
+from .gradients import Branch, EventGradient, Fit, MotionGradient, Orbit
+from .mechanism import Derivatives, Linearisation, Mechanism, NumericMechanism, restored
+from .motion import Event, Simulation, SimulationError, Simulations, read_motion
+from .results import Characteristics, ClosedContact, Collision, CollisionDerivative, Hodograph, Impact, ImpactDerivative
+
+__version__: str = _native.__version__
 
 __all__ = [
-    "ArgumentError", "Characteristics", "Collision", "Contact", "DerivationError", "Derivatives", "Diagnostic", "Event", "Hodograph", "HodographError",
-    "Impact", "ImpactDerivative", "ImpactError", "Linearisation", "Mechanism", "ModelError", "NumericMechanism", "ParameterError",
-    "Quantity", "Simulation", "SimulationError", "Simulations", "StateError", "characteristics", "check", "derivative", "hodograph", "load", "solve",
+    "ArgumentError", "Branch", "Characteristics", "ClosedContact", "Collision", "CollisionDerivative", "Contact", "ContactError", "DerivationError",
+    "Derivatives", "Diagnostic", "Event", "EventGradient", "Fit", "Hodograph", "HodographError", "Impact", "ImpactDerivative", "ImpactError",
+    "Linearisation", "Mechanism", "ModelError", "MotionGradient", "NumericMechanism", "Orbit", "ParameterError", "Quantity", "Simulation",
+    "SimulationError", "Simulations", "StateError", "__version__", "characteristics", "check", "derivative", "hodograph", "load", "load_motion", "solve",
 ]  # fmt: skip
 
-
-@dataclass(frozen=True)
-class Diagnostic:
-    """A mistake in a model, or a warning. ``line`` and ``column`` count from 1; ``text`` is all of it with the lines of the model."""
-
-    code: str
-    severity: str
-    message: str
-    line: Optional[int]
-    column: Optional[int]
-    label: str
-    help: Optional[str]
-    text: str
-
-    def __str__(self):
-        return self.text
+Path = Union[str, "os.PathLike[str]"]
 
 
-def check(model):
+def check(model: Path) -> list[Diagnostic]:
     """All mistakes and warnings of a model (a path, or a text of several lines), as a list of :class:`Diagnostic`."""
     return [Diagnostic(**entry) for entry in _native.check(_text(model))]
 
 
-def load(model, derivation=None):
+def load(model: Path, derivation: Optional[Path] = None) -> Mechanism:
     """A mechanism from a model file or text and its derivation (by default the file ``.derivation`` beside the model).
 
     A model for which no derivation can be read becomes a :class:`NumericMechanism`, with a warning: it is slower, and has fewer methods.
@@ -70,7 +64,7 @@ def load(model, derivation=None):
         return NumericMechanism(_text(model))
 
 
-def solve(matrix, velocity, *, mu, e, law, errors="raise"):
+def solve(matrix: Rows, velocity: Rows, *, mu: Column, e: Column, law: str, errors: str = "raise") -> Impact:
     """Solves collisions of two bodies at a point.
 
     ``matrix`` (6,) or (n, 6): reduced matrix nn, nt, ns, tt, ts, ss, 1/kg. ``velocity`` (3,) or (n, 3): velocity of approach along n, t, s,
@@ -80,22 +74,29 @@ def solve(matrix, velocity, *, mu, e, law, errors="raise"):
     return Impact(_native.solve(matrix, velocity, mu, e, law, errors))
 
 
-def derivative(matrix, velocity, *, mu, e, law, errors="raise"):
+def derivative(matrix: Rows, velocity: Rows, *, mu: Column, e: Column, law: str, errors: str = "raise") -> ImpactDerivative:
     """Derivatives of the outcomes of collisions; the arguments are those of :func:`solve`. Returns :class:`ImpactDerivative`."""
     return ImpactDerivative(_native.derivative(matrix, velocity, mu, e, law, errors))
 
 
-def characteristics(matrix, velocity, *, mu, e, law, errors="raise"):
+def characteristics(matrix: Rows, velocity: Rows, *, mu: Column, e: Column, law: str, errors: str = "raise") -> Characteristics:
     """Characteristic quantities of collisions; the arguments are those of :func:`solve`. Returns :class:`Characteristics`."""
     return Characteristics(_native.characteristics(matrix, velocity, mu, e, law, errors))
 
 
-def hodograph(matrix, velocity, *, mu, e, law, points=201, impulses=None):
+def hodograph(
+    matrix: Rows, velocity: Rows, *, mu: float, e: float, law: str, points: int = 201, impulses: Union[None, float, Sequence[float], Floats] = None
+) -> Hodograph:
     """The course of one collision at equal steps of the normal impulse, or at the normal ``impulses`` (k,), N s, beyond the end by the law, too; the
     other arguments are those of :func:`solve`. Returns :class:`Hodograph`."""
-    impulses = None if impulses is None else [float(impulse) for impulse in np.atleast_1d(impulses)]
-    return Hodograph(_native.hodograph(matrix, velocity, mu, e, law, points, impulses))
+    at = None if impulses is None else [float(impulse) for impulse in np.atleast_1d(impulses)]
+    return Hodograph(_native.hodograph(matrix, velocity, mu, e, law, points, at))
 
 
-def _text(model):
+def load_motion(path: Path) -> Simulation:
+    """The motion of a file that :meth:`Simulation.save` wrote, with its mechanism. Needs pyarrow."""
+    return read_motion(path, restored)
+
+
+def _text(model: Path) -> str:
     return model if isinstance(model, str) else str(model)

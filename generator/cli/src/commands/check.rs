@@ -41,7 +41,7 @@ enum Format {
     Sarif,
 }
 
-/// How often files are looked at for changes.
+/// The interval between two looks at the files.
 const PAUSE: Duration = Duration::from_millis(250);
 
 /// Runs the command.
@@ -60,7 +60,7 @@ fn once(paths: &[PathBuf], format: Format) -> Outcome {
     let (mut models, mut wrong, mut report) = (0, 0, output::Report::default());
     let mut findings = Vec::new();
     for entry in collect(paths)? {
-        let found = looked_at(&entry.source);
+        let found = checked_source(&entry.source);
         models += 1;
         wrong += usize::from(found.diagnostics.iter().any(|found| found.severity == Severity::Error));
         let misnamed = found.mechanism.as_ref().and_then(|mechanism| entry.misnamed(&mechanism.name));
@@ -86,9 +86,9 @@ fn once(paths: &[PathBuf], format: Format) -> Outcome {
     if wrong == 0 { Ok(()) } else { Err(Stop::Reported) }
 }
 
-/// What is found in a model. A file of parts has what its text shows; what they mean is seen where they are
-/// used.
-fn looked_at(source: &Source) -> Checked {
+/// The mistakes of a model. The absence of bodies is not a mistake in a file of parts, which is checked where
+/// its parts are used.
+fn checked_source(source: &Source) -> Checked {
     let mut found = check(source);
     if source.is_library() {
         found.diagnostics.retain(|found| found.code != EMPTY);
@@ -96,11 +96,11 @@ fn looked_at(source: &Source) -> Checked {
     found
 }
 
-/// Checks again and again: whenever a file is other than before.
+/// Checks again whenever a file has changed.
 fn watch(paths: &[PathBuf]) -> Outcome {
-    let mut known: Option<Vec<Seen>> = None;
+    let mut known: Option<Vec<Stamp>> = None;
     loop {
-        let now = seen(paths);
+        let now = stamps(paths);
         if known.as_ref() != Some(&now) {
             if known.is_some() {
                 output::text("\n")?;
@@ -117,10 +117,10 @@ fn watch(paths: &[PathBuf]) -> Outcome {
     }
 }
 
-/// What is known of a file without reading it.
-type Seen = (PathBuf, Option<SystemTime>, u64);
+/// What can be read of a file without opening it: path, time of the last change, size.
+type Stamp = (PathBuf, Option<SystemTime>, u64);
 
-fn seen(paths: &[PathBuf]) -> Vec<Seen> {
+fn stamps(paths: &[PathBuf]) -> Vec<Stamp> {
     let mut found = Vec::new();
     let with_imports = |entry: Entry| {
         let imported: Vec<PathBuf> = entry.source.imported().map(|file| PathBuf::from(file.name())).collect();

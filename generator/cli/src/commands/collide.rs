@@ -8,7 +8,7 @@ use crate::answers::FormArgument;
 use crate::commands::solve::characteristics_of;
 use crate::derivation::{self, Limits};
 use crate::evaluate::collision::{Collision, collide};
-use crate::json::characteristics::{Asked, Form};
+use crate::json::characteristics::{CharacteristicsArgument, Form};
 use crate::output;
 use crate::state_arguments::StateArguments;
 use crate::stop::Outcome;
@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "QUADRATURES")]
     budget: Option<u32>,
     #[command(flatten)]
-    characteristics: Asked,
+    characteristics: CharacteristicsArgument,
     #[command(flatten)]
     state: StateArguments,
     #[command(flatten)]
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     })
 }
 
-/// The collision, and what it was made of.
+/// A collision and the mechanism that was evaluated for it.
 #[derive(serde::Serialize)]
 struct Solved<'a> {
     #[serde(flatten)]

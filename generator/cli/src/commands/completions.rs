@@ -1,4 +1,4 @@
-//! `hodograph completions` and `hodograph man`: what shells and `man` know of the tool.
+//! `hodograph completions` and `hodograph man`: completions for shells and pages for `man`.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// As [`output::bytes`].
+/// Those of [`output::bytes`].
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut script = Vec::new();
     generate(arguments.shell, &mut tool(), "hodograph", &mut script);
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct ManArguments {
-    /// the folder; it is made where it is missing
+    /// the folder; it is made if it is missing
     folder: PathBuf,
 }
 
@@ -44,14 +44,14 @@ pub struct ManArguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Fault`] where the folder cannot be written.
+/// [`Stop::Fault`] if the folder cannot be written.
 pub fn run_man(arguments: &ManArguments) -> Outcome {
     let folder = &arguments.folder;
     std::fs::create_dir_all(folder).map_err(|error| Stop::unwritable(folder, &error))?;
     clap_mangen::generate_to(tool(), folder).map_err(|error| Stop::unwritable(folder, &error))
 }
 
-/// The tool as its users know it: without the commands that are hidden.
+/// The tool without its hidden commands.
 fn tool() -> Command {
     let all = crate::Arguments::command();
     let shown: Vec<Command> =

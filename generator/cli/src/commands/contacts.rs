@@ -17,11 +17,11 @@ use crate::json::{Failure, Fields, Json, Kind, lines::read_line};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// A line longer than this is no problem.
-const LONGEST_LINE: usize = 1 << 28;
+/// The longest line, in bytes.
+const MAX_LINE: usize = 1 << 28;
 
-/// Problems of more contacts would need more than a gigabyte.
-const MOST_CONTACTS: usize = 2000;
+/// The largest number of contacts; more would need more than a gigabyte.
+const MAX_CONTACTS: usize = 2000;
 
 /// Solve problems of several contacts: one JSON object per line, one answer per line
 ///
@@ -42,12 +42,13 @@ pub struct Arguments {
     /// file with the lines, `-` for standard input
     #[arg(default_value = "-", value_name = "FILE")]
     pub file: PathBuf,
-    /// of at most four contacts, write a line for every solution in distinct modes, the most resting first
+    /// for at most four contacts, write a line for every solution in distinct modes, the one with most
+    /// contacts at rest first
     #[arg(long)]
     pub all: bool,
 }
 
-/// Forces and velocities.
+/// The solution of a problem: forces and velocities.
 #[derive(Clone, Debug, Serialize)]
 struct Answer {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,7 +71,7 @@ struct Named<'a> {
 ///
 /// # Errors
 ///
-/// [`Stop::Reported`] if a line had an error, [`Stop::Call`] for a file that cannot be read.
+/// [`Stop::Reported`] if a line had an error, [`Stop::Call`] if the file cannot be read.
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.file.as_os_str() == "-" {
         if io::stdin().is_terminal() {
@@ -87,14 +88,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
 
 fn answer_lines(arguments: &Arguments, input: &mut impl BufRead, from: &str) -> Outcome {
     let (mut all_solved, mut line) = (true, Vec::new());
-    while let Some(complete) = read_line(input, &mut line, LONGEST_LINE, from)? {
+    while let Some(complete) = read_line(input, &mut line, MAX_LINE, from)? {
         let (name, answers) = if complete {
             if line.iter().all(u8::is_ascii_whitespace) {
                 continue;
             }
             answer(&line, arguments.all)
         } else {
-            let said = format!("the line is longer than {LONGEST_LINE} bytes: give one problem per line");
+            let said = format!("the line is longer than {MAX_LINE} bytes: give one problem per line");
             (None, Err(Failure::bad_json(said)))
         };
         all_solved &= answers.is_ok();
@@ -103,7 +104,7 @@ fn answer_lines(arguments: &Arguments, input: &mut impl BufRead, from: &str) -> 
             Err(failure) => output::json(&Named { name: name.as_deref(), error: &failure }),
         };
         match written {
-            // There may be no end of lines: nothing more is read.
+            // The input may never reach an end of line, so nothing more is read.
             Err(Stop::ReaderGone) => break,
             other => other?,
         }
@@ -127,11 +128,11 @@ fn answer(line: &[u8], all: bool) -> (Option<String>, Result<Vec<Answer>, Failur
 
 fn parsed(line: &[u8]) -> Result<Fields, Failure> {
     let text = std::str::from_utf8(line)
-        .map_err(|error| Failure::bad_json(format!("this is no UTF-8 at byte {}", error.valid_up_to())))?;
+        .map_err(|error| Failure::bad_json(format!("this is not UTF-8 at byte {}", error.valid_up_to())))?;
     Fields::new(Json::parse(text)?, "a problem")
 }
 
-/// A problem as it was given.
+/// A problem as read from a line.
 struct Given {
     w: DMatrix<f64>,
     q: DVector<f64>,
@@ -142,9 +143,9 @@ struct Given {
 impl Given {
     fn read(fields: &Fields) -> Result<Self, Failure> {
         let contacts = fields.number("contacts", "the number of contacts")?;
-        if contacts < 0.0 || contacts.fract() != 0.0 || contacts > MOST_CONTACTS as f64 {
+        if contacts < 0.0 || contacts.fract() != 0.0 || contacts > MAX_CONTACTS as f64 {
             return Err(Failure::bad_json(format!(
-                "`contacts` must be a whole number from 0 to {MOST_CONTACTS}, not {contacts}"
+                "`contacts` must be a whole number from 0 to {MAX_CONTACTS}, not {contacts}"
             )));
         }
         let k = contacts as usize;
@@ -172,7 +173,7 @@ impl Given {
             return Err(Failure::new(
                 Kind::Of(Cause::NotPositiveSemidefinite),
                 format!(
-                    "`w` has {} on its diagonal (contact {}): it belongs to no mechanism",
+                    "`w` has {} on its diagonal (contact {}): no mechanism has such a matrix",
                     w[(row, row)],
                     row / 3
                 ),
@@ -294,7 +295,7 @@ fn read_block(block: &Json, place: usize, k: usize) -> Result<(usize, usize, [f6
     Ok((i, j, nine))
 }
 
-/// The direction of slip of a contact, made one of length one.
+/// The direction of slip of a contact, normalised.
 fn direction(item: &Json, i: usize) -> Result<Option<Vector2<f64>>, Failure> {
     if *item == Json::Null {
         return Ok(None);

@@ -43,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (mut all_well, mut report) = (true, output::Report::default());
     let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
     for entry in collect(&arguments.models)? {
-        // parts have equations in the models that use them
+        // A file of parts has no equations of its own.
         if entry.source.is_library() {
             continue;
         }
@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if all_well { Ok(()) } else { Err(Stop::Reported) }
 }
 
-/// Derives or checks one model; false if it is stale.
+/// Derives or checks one model; `false` if its derivation is stale.
 fn one(
     arguments: &Arguments,
     entry: &Entry,
@@ -102,18 +102,18 @@ fn one(
     Ok(true)
 }
 
-/// How a fresh derivation differs from what its model gives now.
+/// How a fresh derivation differs from the one that is derived now.
 fn difference(model: &Model, path: &Path, limits: &Limits) -> Outcome<Option<String>> {
-    let kept = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
+    let stored = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
     let (_, derived) = derivation::derive(model, limits)?;
-    let [kept, derived]: [Vec<&str>; 2] = [&kept, &derived].map(|text| text.lines().collect());
-    if kept == derived {
+    let [stored, derived]: [Vec<&str>; 2] = [&stored, &derived].map(|text| text.lines().collect());
+    if stored == derived {
         return Ok(None);
     }
-    let line = kept.iter().zip(&derived).take_while(|(a, b)| a == b).count() + 1;
+    let line = stored.iter().zip(&derived).take_while(|(a, b)| a == b).count() + 1;
     let wrote =
         |lines: &[&str]| lines.iter().find_map(|line| line.strip_prefix("generator ")).map(str::to_owned);
-    let (before, now) = (wrote(&kept).unwrap_or_default(), wrote(&derived).unwrap_or_default());
+    let (before, now) = (wrote(&stored).unwrap_or_default(), wrote(&derived).unwrap_or_default());
     let version = match before == now {
         true => String::new(),
         false => format!(" (version {before} of the generator wrote it, this is {now})"),

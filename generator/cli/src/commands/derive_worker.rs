@@ -1,14 +1,14 @@
-//! The child process that uses the algebra engine. The engine prints to standard output; the result comes
-//! after that.
+//! The child process that uses the algebra engine. The engine prints to standard output; the result follows
+//! after its output.
 
 use crate::stop::Outcome;
 
 /// Derive one model in a process of its own (used by the other commands)
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// what to call the model in messages; its text comes from standard input
+    /// the name of the model in messages; its text comes from standard input
     name: String,
-    /// answer with what each pass did, instead of the derivation
+    /// answer with the effect of each pass instead of the derivation
     #[arg(long)]
     trace: bool,
 }
@@ -17,7 +17,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// Said on stderr.
+/// Reported on standard error.
 #[cfg(feature = "derive")]
 pub fn run(arguments: &Arguments) -> Outcome {
     use crate::commands::explain::row;
@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     output::text(&format!("{ANSWER}{answer}"))
 }
 
-/// Nobody waits for the result of a process whose parent is gone, but others wait for the engine.
+/// Ends this process when its parent ends: nobody would use its result, but others wait for the engine.
 #[cfg(all(feature = "derive", unix))]
 fn end_with_parent() {
     use std::os::unix::process::parent_id;
@@ -67,7 +67,7 @@ fn end_with_parent() {
 #[cfg(all(feature = "derive", not(unix)))]
 fn end_with_parent() {}
 
-/// Without the engine there is nothing to do.
+/// Fails, since the engine is not built in.
 ///
 /// # Errors
 ///

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::answers::FormArgument;
 use crate::derivation::{self, Limits};
 use crate::evaluate::report::{Report, report};
-use crate::json::characteristics::{Asked, Form};
+use crate::json::characteristics::{CharacteristicsArgument, Form};
 use crate::output;
 use crate::state_arguments::StateArguments;
 use crate::stop::Outcome;
@@ -23,7 +23,7 @@ pub struct Arguments {
     /// the model file
     model: PathBuf,
     #[command(flatten)]
-    characteristics: Asked,
+    characteristics: CharacteristicsArgument,
     /// with --characteristics: Coulomb's coefficient of friction, on which phi_hat, f_hat, g_hat and
     /// phi_bar depend
     #[arg(
@@ -73,7 +73,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     )
 }
 
-/// The report, and what it was made of.
+/// A report and the mechanism that was evaluated for it.
 #[derive(serde::Serialize)]
 struct Evaluated<'a> {
     #[serde(flatten)]

@@ -24,7 +24,7 @@ use crate::stop::{Outcome, Stop};
 pub struct Arguments {
     /// the model file, or the code of an error or warning
     model: PathBuf,
-    /// how to write them
+    /// the format of the equations
     #[arg(long, value_enum, default_value_t = Style::Text)]
     format: Style,
     /// only these quantities, as derivations call them (`mass_matrix`, `contact 0 reduced` ..) [default: the
@@ -34,7 +34,7 @@ pub struct Arguments {
     /// instead of equations, the number of operations of each routine at each stage
     #[arg(long, conflicts_with = "format")]
     cost: bool,
-    /// with --cost: derive anew, and show what is left after each pass
+    /// with --cost: derive again, and show the operations after each pass
     #[arg(long, requires = "cost")]
     passes: bool,
     #[command(flatten)]
@@ -94,14 +94,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
     output::text(&arguments.limits.bound(&doing, move || explain(&mechanism, &program, &quantities, format))?)
 }
 
-/// The page of a code such as `E062`, if that is what is named and no file.
+/// The page of a code such as `E062`, if the argument is a code and not a file.
 fn code(path: &Path) -> Outcome<Option<String>> {
     let Some(name) = path.to_str().filter(|_| !path.exists()).map(str::to_uppercase) else { return Ok(None) };
     let digits = name.strip_prefix(['E', 'W']).filter(|rest| !rest.is_empty() && rest.len() <= 6);
     let Some(digits) = digits.filter(|rest| rest.bytes().all(|digit| digit.is_ascii_digit())) else {
         return Ok(None);
     };
-    // `E62` is as good as `E062`
+    // accept `E62` for `E062`
     let full = format!("{}{:0>3}", &name[..1], digits.trim_start_matches('0'));
     match explanations::page_of(&full) {
         Some(page) => Ok(Some(page)),
@@ -116,8 +116,8 @@ fn code(path: &Path) -> Outcome<Option<String>> {
     }
 }
 
-/// Operations at construction, then per evaluation: multiplications, additions, divisions, sines and cosines,
-/// others, all.
+/// The cells of a row: operations at construction, then those of an evaluation: multiplications, additions,
+/// divisions, sines and cosines, others, all.
 pub fn row(cost: &Cost) -> String {
     let cells = |count: Count| {
         let Count { multiplications, additions, divisions, trigonometric, functions, .. } = count;

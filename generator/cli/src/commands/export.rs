@@ -12,6 +12,7 @@ use hodograph_interpreter::motion::{self, GivenSurface};
 use crate::commands::expand;
 use crate::derivation::{self, Limits};
 use crate::evaluate::Machine;
+use crate::export::motion::Motion;
 use crate::export::{Scalar, files, fmu};
 use crate::json::Failure;
 use crate::model;
@@ -34,7 +35,7 @@ pub struct Arguments {
     /// the folder to write to, which must not exist; with --fmu the file
     #[arg(long, short, value_name = "PATH")]
     output: PathBuf,
-    /// numbers are `float` instead of `double`: for processors that have singles only
+    /// use `float` instead of `double`, for processors with single precision only
     #[arg(long, conflicts_with = "fmu")]
     single: bool,
     /// the folder of the package `hodograph`, which the crate depends on [default: the published package of
@@ -56,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.fmu { unit(arguments) } else { library(arguments) }
 }
 
-/// What a manifest says after the name of a package: its folder, or its published version.
+/// The value of a dependency in a manifest: a folder, or the published version.
 fn dependency(folder: Option<&Path>, features: &str) -> Outcome<String> {
     let Some(folder) = folder else {
         return Ok(format!("{{ version = \"{}\"{features} }}", env!("CARGO_PKG_VERSION")));
@@ -70,7 +71,7 @@ fn dependency(folder: Option<&Path>, features: &str) -> Outcome<String> {
     let folder = std::fs::canonicalize(folder).map_err(|error| Stop::unreadable(folder, &error))?;
     match folder.to_str().filter(|path| !path.contains(['\'', '\n'])) {
         Some(path) => Ok(format!("{{ path = '{path}'{features} }}")),
-        None => Err(Stop::Call(format!("{} cannot stand in a manifest", folder.display()))),
+        None => Err(Stop::Call(format!("{} has characters that a manifest cannot hold", folder.display()))),
     }
 }
 
@@ -94,7 +95,22 @@ fn library(arguments: &Arguments) -> Outcome {
     let expanded = expand::module(&machine, Requests::default())?;
     let name = snake_case(&machine.mechanism.name);
     let offered = emit::interface(&machine.mechanism, &machine.program, &name).map_err(Stop::Fault)?;
-    let files = files(&expanded, &offered, scalar, &dependency);
+    // Beside the package `hodograph` stands that which follows motion, where the sources are whole.
+    let own = arguments.hodograph.as_ref().map(|runtime| runtime.join("../bindings/fmu"));
+    let own = own.filter(|own| own.join("Cargo.toml").is_file());
+    // A model that leaves a parameter open is a library nevertheless; it may depend on time.
+    let interpreted = InterpretedMechanism::new(machine.mechanism.clone(), machine.program.clone());
+    let greatest_step = interpreted.map_or(motion::STEP_OF_TIME, |found| found.greatest_step(false));
+    let motion = match (&arguments.hodograph, &own) {
+        (Some(_), None) => None,
+        _ => Some(Motion {
+            contacts: machine.mechanism.contacts.iter().map(|contact| contact.name.clone()).collect(),
+            inputs: machine.mechanism.inputs.len(),
+            max_step: greatest_step,
+            dependency: self::dependency(own.as_deref(), "")?,
+        }),
+    };
+    let files = files(&expanded, &offered, scalar, &dependency, motion.as_ref());
     output::files(folder, &files)?;
     output::say(format_args!(
         "{} written: README.md there says how to build it",
@@ -124,7 +140,7 @@ fn unit(arguments: &Arguments) -> Outcome {
         model: &model,
         docs: &sentence(&machine),
         mechanism: &mechanism,
-        max_step: motion::greatest_step(&machine.program, false),
+        max_step: mechanism.greatest_step(false),
         surfaces: &surfaces,
         dependencies,
         lock: root.map(|root| root.join("Cargo.lock")).filter(|lock| lock.is_file()),
@@ -134,7 +150,7 @@ fn unit(arguments: &Arguments) -> Outcome {
     Ok(())
 }
 
-/// The surfaces with which the unit begins: what the options say, else what the model states.
+/// The surfaces at the start of the unit: those of the options, else those of the model.
 fn surfaces(
     mechanism: &InterpretedMechanism,
     arguments: &SurfaceArguments,

@@ -1,7 +1,8 @@
 //! `hodograph fit`: fits parameters, mu and e to measured motions.
 
-mod table_of_motions;
+pub mod table_of_motions;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use hodograph::{ComponentKind, Mechanism as _, Surface};
@@ -31,20 +32,21 @@ pub struct Arguments {
     data: PathBuf,
     /// the model file
     model: PathBuf,
-    /// what is fitted: names of parameters, and mu, e, mu.CONTACT, e.CONTACT
+    /// the names of what is fitted: parameters, mu, e, mu.CONTACT, e.CONTACT
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', required = true)]
     parameters: Vec<String>,
     /// the columns that are compared [default: all coordinates and speeds of the data]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     outputs: Vec<String>,
-    /// errors of measurement by which differences are divided, as x=0.0002,q=0.001 [default: the standard deviation of
-    /// the column]
+    /// standard errors of the measurements, by which differences are divided, as x=0.0002,q=0.001 [default:
+    /// the standard deviation of the column]
     #[arg(long, value_name = "NAME=NUMBER,..", value_delimiter = ',')]
     error: Vec<String>,
-    /// so often trajectories are drawn anew, with replacement, and fitted again: the spread of the values
+    /// number of bootstrap samples: trajectories are drawn with replacement and fitted again, which gives the
+    /// spread of the values
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     bootstrap: usize,
-    /// the seed of these draws
+    /// the seed of the bootstrap samples
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
@@ -55,7 +57,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] for what is wrong with the data or the options; [`Stop::Fault`] where a motion cannot be followed.
+/// [`Stop::Call`] for mistakes in the data or the options; [`Stop::Fault`] if a motion cannot be simulated.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     let names: Vec<&str> = arguments.parameters.iter().map(|name| name.trim()).collect();
@@ -69,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             if !state.inputs.is_empty() {
                 return Err(Stop::Fault("motions of mechanisms with inputs are not fitted yet".to_owned()));
             }
-            let options = arguments.motion.options(&machine, &mechanism, &start)?;
+            let options = arguments.motion.options(&mechanism, &start)?;
             let motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
             let units = arguments.units(&motions, &mechanism)?;
             let task = FitTask {
@@ -81,7 +83,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 seed: arguments.seed,
             };
             let found = fit(&mechanism, &options, &task).map_err(stop)?;
-            Ok(Answer::new(&found, &names, (&mechanism, &by), motions.trajectories.len()))
+            let mut answer = Answer::new(&found, &names, (&mechanism, &by), motions.trajectories.len());
+            let outputs = motions.names(&mechanism);
+            answer.units = outputs.iter().cloned().zip(units.iter().copied()).collect();
+            answer.outputs = outputs;
+            answer.model = arguments.model.display().to_string();
+            answer.options = arguments.motion.given();
+            answer.motions = motions.trajectories.iter().map(|one| one.name.clone()).collect();
+            Ok(answer)
         },
         |answer| answer.tables(&names),
     )
@@ -95,7 +104,7 @@ fn stop(error: FitError) -> Stop {
 }
 
 impl Arguments {
-    /// By what the differences of each column are divided.
+    /// The divisors of the differences of each column.
     fn units(&self, motions: &Motions, mechanism: &InterpretedMechanism) -> Outcome<Vec<f64>> {
         let mut units = motions.deviations();
         let call =
@@ -115,11 +124,11 @@ impl Arguments {
     }
 }
 
-/// What is answered.
+/// The answer of the command.
 #[derive(Serialize)]
 struct Answer<'a> {
     values: Named<'a, f64>,
-    /// null where the data do not determine a value
+    /// null if the data do not determine a value
     errors: Named<'a, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     bootstrap: Option<Named<'a, f64>>,
@@ -130,8 +139,14 @@ struct Answer<'a> {
     trajectories: usize,
     without_derivatives: Vec<String>,
     steps: usize,
-    /// options with which `simulate` has these values
+    /// options of `simulate` with these values
     arguments: Vec<String>,
+    /// what `validate` needs: the model, the options, the columns and their divisors, and the names of the motions
+    model: String,
+    options: Vec<String>,
+    outputs: Vec<String>,
+    units: BTreeMap<String, f64>,
+    motions: Vec<String>,
 }
 
 impl<'a> Answer<'a> {
@@ -165,6 +180,11 @@ impl<'a> Answer<'a> {
             without_derivatives: found.without_derivatives.clone(),
             steps: found.steps,
             arguments,
+            model: String::new(),
+            options: Vec::new(),
+            outputs: Vec::new(),
+            units: BTreeMap::new(),
+            motions: Vec::new(),
         }
     }
 

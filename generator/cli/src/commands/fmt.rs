@@ -22,7 +22,7 @@ pub struct Arguments {
     /// output
     #[arg(required = true)]
     models: Vec<PathBuf>,
-    /// write nothing: name the models whose layout is another
+    /// write nothing: name the models whose layout would change
     #[arg(long)]
     check: bool,
 }
@@ -31,7 +31,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Reported`] if a model cannot be parsed, or is laid out in another way and `--check` asks.
+/// [`Stop::Reported`] if a model cannot be parsed, or with `--check` if its layout would change.
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.models.iter().any(|path| path == Path::new("-")) {
         return match arguments.models.as_slice() {
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             failed += 1;
             continue;
         };
-        // as it is in the file: `Source` holds what was read
+        // compare with the text as it was read from the file
         if entry.source.text() == Some(text.as_str()) {
             same += 1;
             continue;
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if failed > 0 || arguments.check && changed > 0 { Err(Stop::Reported) } else { Ok(()) }
 }
 
-/// From standard input to standard output.
+/// Lays out standard input and writes it to standard output.
 fn stream(check: bool) -> Outcome {
     let bytes = files::up_to(std::io::stdin().lock(), MAX_BYTES)
         .map_err(|error| Stop::Fault(format!("standard input: {error}")))?;
@@ -77,7 +77,7 @@ fn stream(check: bool) -> Outcome {
     }
 }
 
-/// The text of a model in the one style; nothing, once it is said why, where that cannot be.
+/// The text of a model in the standard layout; `None` after reporting why it cannot be laid out.
 fn laid_out(source: &Source) -> Outcome<Option<String>> {
     match format(source) {
         Ok(text) => Ok(Some(text)),

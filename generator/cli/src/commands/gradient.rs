@@ -31,7 +31,7 @@ pub struct Arguments {
     /// mu.CONTACT, e.CONTACT
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', required = true)]
     by: Vec<String>,
-    /// the times at which states are wanted, s, rising
+    /// the times of the states, s, increasing
     #[arg(long, value_name = "TIME,..", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     at: Vec<f64>,
     #[command(flatten)]
@@ -42,7 +42,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// An error object for what is wrong with the state, the names, the times or the motion.
+/// An error object for mistakes in the state, the names or the times, and for a motion that fails.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     let by = arguments.by.iter().map(|name| name.trim()).collect();
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let by: Result<Vec<By>, String> = names.by.iter().map(named).collect();
             let by = by.map_err(|message| Failure::new(Kind::UnknownName, message))?;
             let start = state.borrowed();
-            let options = arguments.motion.options(&machine, &mechanism, &start)?;
+            let options = arguments.motion.options(&mechanism, &start)?;
             let found = differentiate(&mechanism, &start, options, &by, &arguments.at).map_err(stop)?;
             Ok(names.answer(&found))
         },
@@ -70,7 +70,7 @@ fn stop(error: GradientError) -> Stop {
     }
 }
 
-/// What is answered.
+/// The answer of the command.
 #[derive(Serialize)]
 struct Answer<'a> {
     states: Vec<StateAt<'a>>,
@@ -78,14 +78,14 @@ struct Answer<'a> {
     undefined: Option<Why<'a>>,
 }
 
-/// Numbers of coordinates and speeds.
+/// Values for coordinates and speeds.
 #[derive(Serialize)]
 struct OfState<'a> {
     q: Named<'a, f64>,
     u: Named<'a, f64>,
 }
 
-/// Of each variable, the derivatives by it.
+/// The derivatives with respect to each variable.
 type Derivatives<'a> = Option<Named<'a, OfState<'a>>>;
 
 #[derive(Serialize)]
@@ -115,7 +115,7 @@ struct Why<'a> {
     message: String,
 }
 
-/// The names that an answer uses.
+/// The names in an answer.
 struct Names<'a> {
     model: &'a Mechanism,
     by: Vec<&'a str>,
@@ -172,7 +172,7 @@ impl<'a> Names<'a> {
 }
 
 impl Answer<'_> {
-    /// A table of each state, one of the events, and why there are no more derivatives.
+    /// A table of each state, one of the events, and the reason if derivatives end.
     fn tables(&self, by: &[&str]) -> String {
         let heads = |first: &[&str]| Table::new(first.iter().copied().chain(by.iter().copied()));
         let cell = |value: Option<f64>| value.map_or("-".to_owned(), number);

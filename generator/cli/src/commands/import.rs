@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         .map_err(|error| Stop::unreadable(&arguments.file, &error))?;
     let source = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Stop::Fault(format!("{file}: this is no UTF-8 at byte {at}: save it as UTF-8"))
+        Stop::Fault(format!("{file}: this is not UTF-8 at byte {at}: save it as UTF-8"))
     })?;
     let options = Options {
         contacts: arguments.contact.clone(),

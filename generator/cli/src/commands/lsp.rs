@@ -8,7 +8,7 @@ use crate::stop::Outcome;
 /// Editors start it. docs/editors.md says how to set them up.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// said by editors; there is no other way
+    /// passed by editors; there is no other way to connect
     #[arg(long, hide = true)]
     stdio: bool,
 }
@@ -17,7 +17,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// As [`lsp::serve`].
+/// Those of [`lsp::serve`].
 pub fn run(_: &Arguments) -> Outcome {
     lsp::serve()
 }

@@ -22,3 +22,4 @@ pub mod plot;
 pub mod serve;
 pub mod simulate;
 pub mod solve;
+pub mod validate;

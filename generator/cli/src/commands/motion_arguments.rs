@@ -1,4 +1,4 @@
-//! What commands that follow a motion again and again ask for: its start, its surfaces and its tolerance.
+//! The arguments of commands that simulate a motion many times: its start, its surfaces and its tolerance.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::stop::{Outcome, Stop};
 /// The arguments of a motion.
 #[derive(Clone, Debug, clap::Args)]
 pub struct MotionArguments {
-    /// where it begins
+    /// the initial state
     #[command(flatten)]
     pub state: StateArguments,
     /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
@@ -24,7 +24,7 @@ pub struct MotionArguments {
     tolerance: Option<f64>,
     #[command(flatten)]
     surfaces: MotionSurfaces,
-    /// how the answer is written
+    /// the form of the answer
     #[command(flatten)]
     pub form: FormArgument,
     #[command(flatten)]
@@ -36,33 +36,35 @@ impl MotionArguments {
     ///
     /// # Errors
     ///
-    /// [`Stop::Call`] for the tolerance, and as [`derivation::machine`].
+    /// [`Stop::Call`] for the tolerance, and the errors of [`derivation::machine`].
     pub fn machine(&self, model: &Path) -> Outcome<Machine> {
         motion::check_tolerance(self.tolerance())
             .map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
         derivation::machine(model, &self.limits)
     }
 
-    /// How a motion from this start is followed.
+    /// The options of a simulation from this start.
     ///
     /// # Errors
     ///
-    /// [`Stop::Call`] where a contact that can close has no surface.
-    pub fn options(
-        &self,
-        machine: &Machine,
-        mechanism: &InterpretedMechanism,
-        start: &Borrowed<'_>,
-    ) -> Outcome<Options> {
+    /// [`Stop::Call`] if a contact that can close has no surface.
+    pub fn options(&self, mechanism: &InterpretedMechanism, start: &Borrowed<'_>) -> Outcome<Options> {
         let Found { surfaces, laws } = self.surfaces.of(mechanism, start)?;
         Ok(Options {
             relative_tolerance: self.tolerance(),
             absolute_tolerance: self.tolerance(),
-            max_step: motion::greatest_step(&machine.program, false),
+            max_step: mechanism.greatest_step(false),
             surfaces,
             laws,
             ..Options::default()
         })
+    }
+
+    /// The options as they were given, but for the form of the answer.
+    pub fn given(&self) -> Vec<String> {
+        let tolerance = self.tolerance.map(|value| ["--tolerance".to_owned(), value.to_string()]);
+        let own = tolerance.into_iter().flatten();
+        self.state.given().into_iter().chain(own).chain(self.surfaces.given()).collect()
     }
 
     fn tolerance(&self) -> f64 {

@@ -32,21 +32,21 @@ pub struct Arguments {
     /// the period, s, of a motion that is driven in time: a number, or as 2*pi/60
     #[arg(long, value_name = "SECONDS", conflicts_with = "returns", required_unless_present = "returns")]
     period: Option<String>,
-    /// the event just after which a motion has returned: collision, stick, slip, lift_off, ..; with :CONTACT, and
-    /// with :COUNT how many of them make a period
+    /// the event that ends a period: collision, stick, slip, lift_off, ..; with :CONTACT, and with :COUNT if
+    /// it happens several times in a period
     #[arg(long = "return", value_name = "EVENT[:CONTACT][:COUNT]")]
     returns: Option<String>,
-    /// coordinates that take their values of the start again when it has returned: places along which nothing
-    /// changes, and what a symmetry brings back, as the angle of the next spoke
+    /// coordinates that are reset to their initial values after each period: those on which nothing depends,
+    /// and those that a symmetry brings back, such as the angle of the next spoke
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     reset: Vec<String>,
-    /// the longest period that is waited for, s
+    /// the longest period to wait for, s
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
     longest: f64,
-    /// a parameter (or mu, e, mu.CONTACT, e.CONTACT) and the range through which motions are followed
+    /// a parameter (or mu, e, mu.CONTACT, e.CONTACT) and the range through which the motion is followed
     #[arg(long, value_name = "NAME=FROM..TO")]
     follow: Option<String>,
-    /// at most so many motions are followed
+    /// the greatest number of motions along the range
     #[arg(long, value_name = "COUNT", default_value_t = 500)]
     points: usize,
     #[command(flatten)]
@@ -57,7 +57,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// An error object for what is wrong with the state or the names; [`Stop::Fault`] where no periodic motion is found.
+/// An error object for mistakes in the state or the names; [`Stop::Fault`] if no periodic motion is found.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     arguments.motion.form.write(
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let state = arguments.motion.state.state(&machine)?;
             let mechanism = machine.interpreted(&state)?;
             let start = state.borrowed();
-            let options = arguments.motion.options(&machine, &mechanism, &start)?;
+            let options = arguments.motion.options(&mechanism, &start)?;
             let periodic = arguments.periodic(&mechanism)?;
             let Some(follow) = &arguments.follow else {
                 let orbit = find_orbit(&mechanism, &start, &options, &periodic, &[]).map_err(stop)?;
@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 changes: found
                     .changes
                     .iter()
-                    .map(|change| Changed { change: change.kind.name(), motion: motion(&change.at) })
+                    .map(|change| ChangeOf { change: change.kind.name(), motion: motion(&change.at) })
                     .collect(),
                 ended: found.ended,
             })
@@ -146,10 +146,10 @@ impl Arguments {
                         }
                     }
                 }
-                if !EVENTS.contains(&event.as_str()) {
+                if !Return::EVENTS.contains(&event.as_str()) {
                     return Err(Stop::Call(format!(
                         "--return {text}: there is no event `{event}` at which a motion returns: there are {}",
-                        EVENTS.join(", ")
+                        Return::EVENTS.join(", ")
                     )));
                 }
                 Return::At { event, contact, count }
@@ -160,20 +160,17 @@ impl Arguments {
     }
 }
 
-/// The events at which a motion may return: those whose times have derivatives.
-const EVENTS: [&str; 4] = ["collision", "lift_off", "slip", "stick"];
-
-/// What is answered.
+/// The answer of the command.
 #[derive(Serialize)]
 struct Answer<'a> {
     motions: Vec<Motion<'a>>,
-    changes: Vec<Changed<'a>>,
+    changes: Vec<ChangeOf<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ended: Option<String>,
 }
 
 #[derive(Serialize)]
-struct Changed<'a> {
+struct ChangeOf<'a> {
     change: &'static str,
     #[serde(flatten)]
     motion: Motion<'a>,
@@ -182,7 +179,7 @@ struct Changed<'a> {
 /// A periodic motion.
 #[derive(Serialize)]
 struct Motion<'a> {
-    /// of the parameter that is followed
+    /// value of the parameter that is followed
     #[serde(skip_serializing_if = "Option::is_none")]
     value: Option<f64>,
     period: f64,
@@ -193,11 +190,11 @@ struct Motion<'a> {
     stable: bool,
     residual: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    events: Option<Vec<Happening<'a>>>,
+    events: Option<Vec<OrbitEvent<'a>>>,
 }
 
 #[derive(Serialize)]
-struct Happening<'a> {
+struct OrbitEvent<'a> {
     t: f64,
     event: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -208,7 +205,7 @@ impl<'a> Motion<'a> {
     fn new(model: &'a Mechanism, value: Option<f64>, orbit: &Orbit, events: bool) -> Self {
         let (q, u) = orbit.state.split_at(model.coordinates.len());
         let speeds = model.speeds.iter().filter(|speed| !speed.dependent);
-        let happening = |event: &hodograph_simulation::Event| Happening {
+        let of_event = |event: &hodograph_simulation::Event| OrbitEvent {
             t: event.time,
             event: event.kind.name(),
             contact: event
@@ -224,7 +221,7 @@ impl<'a> Motion<'a> {
             multipliers: orbit.multipliers.iter().map(|number| [number.re + 0.0, number.im + 0.0]).collect(),
             stable: orbit.is_stable(),
             residual: orbit.residual,
-            events: events.then(|| orbit.events.iter().map(happening).collect()),
+            events: events.then(|| orbit.events.iter().map(of_event).collect()),
         }
     }
 

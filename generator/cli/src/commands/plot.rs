@@ -70,13 +70,13 @@ pub struct Arguments {
     /// what to draw
     #[arg(long, value_enum, default_value_t = Kind::Course)]
     figure: Kind,
-    /// `portrait`: how many hodographs [default: 24]
+    /// `portrait`: number of hodographs [default: 24]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=360))]
     starts: Option<u16>,
-    /// where to write [default: standard output]
+    /// the file [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// the format [default: as the file's name ends, else svg]
+    /// the format [default: by the ending of the file's name, else svg]
     #[arg(long, value_enum)]
     format: Option<Format>,
     #[command(flatten)]
@@ -98,14 +98,14 @@ enum Kind {
 ///
 /// # Errors
 ///
-/// An error object for what is wrong with the collision.
+/// An error object for mistakes in the collision.
 pub fn run(arguments: &Arguments) -> Outcome {
     let format = Format::of(arguments.format, arguments.output.as_deref())?;
     if format == Format::Png && arguments.output.is_none() && std::io::stdout().is_terminal() {
         return Err(Stop::Call("a picture is not for a terminal: give --output FILE.png".to_owned()));
     }
     if let (true, Some(model)) = (arguments.sketch, &arguments.model) {
-        apart(arguments)?;
+        check_output(arguments)?;
         let bytes = sketched(model, arguments, format)?;
         return match &arguments.output {
             Some(path) => output::file(path, &bytes),
@@ -124,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.model.is_none() && !arguments.state.is_empty() {
         return Err(Stop::Call("--state and --parameter are those of a model: name one".to_owned()));
     }
-    apart(arguments)?;
+    check_output(arguments)?;
     let Drawn { title, matrix, velocity } = collision(arguments)?;
     let figure = match arguments.figure {
         Kind::Course => course(&format!("{title}e = {e}"), &matrix, velocity, &arguments.mu, e)?,
@@ -153,14 +153,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
 }
 
-/// Refuses to write over what is read.
-fn apart(arguments: &Arguments) -> Outcome {
+/// Refuses to overwrite an input file.
+fn check_output(arguments: &Arguments) -> Outcome {
     let Some(path) = &arguments.output else { return Ok(()) };
     let mut read = arguments.state.files();
     if let Some(model) = &arguments.model {
         read.extend([model.clone(), place::beside(model)]);
     }
-    output::apart(&[path], &read)
+    output::check_distinct(&[path], &read)
 }
 
 /// The picture of a mechanism in a state.
@@ -201,7 +201,7 @@ fn course(title: &str, m: &ReducedMatrix<f64>, velocity: [f64; 3], mu: &[f64], e
     Ok(figure(title, &traces))
 }
 
-/// Refuses a matrix or friction as `solve` does.
+/// Refuses a matrix or coefficient of friction that `solve` refuses.
 fn check_conics(matrix: &ReducedMatrix<f64>, mu: &[f64]) -> Outcome {
     let approach = Vector3::new(-1.0, 0.0, 0.0);
     for &mu in mu {
@@ -212,7 +212,7 @@ fn check_conics(matrix: &ReducedMatrix<f64>, mu: &[f64]) -> Outcome {
     Ok(())
 }
 
-/// What is drawn: the beginning of a title, the reduced matrix and the velocity of approach.
+/// What is to be drawn: the beginning of the title, the reduced matrix and the velocity of approach.
 struct Drawn {
     title: String,
     matrix: ReducedMatrix<f64>,
@@ -222,7 +222,7 @@ struct Drawn {
 /// Largest size of a collision in JSON, in bytes.
 const MAX_BYTES: usize = 1 << 20;
 
-/// What collides.
+/// Reads or evaluates the collision.
 fn collision(arguments: &Arguments) -> Outcome<Drawn> {
     let Some(path) = &arguments.model else {
         let unreadable =
@@ -233,7 +233,7 @@ fn collision(arguments: &Arguments) -> Outcome<Drawn> {
         let case = Fields::new(Json::parse(&text)?, "a collision")?;
         let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
         let velocity = match arguments.figure {
-            // Slip along t, as in the paper, where nothing else is said.
+            // By default slip is along t, as in the paper.
             Kind::Conics if case.get("v").is_none() => [-1.0, 1.0, 0.0],
             _ => case.numbers::<3>("v", "the three numbers n, t, s")?,
         };

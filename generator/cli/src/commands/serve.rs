@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::artifact::{MAX_BYTES as MOST_DERIVATION, place};
+use hodograph_generator::artifact::{MAX_BYTES as MAX_DERIVATION, place};
 use hodograph_generator::files;
 use serde_json::json;
 use tiny_http::{Header, Method, Request, Response, Server, StatusCode};
@@ -32,24 +32,24 @@ pub struct Arguments {
 }
 
 /// Largest page, in bytes.
-const MOST_PAGE: usize = 16 << 20;
+const MAX_PAGE: usize = 16 << 20;
 /// Largest model, in bytes.
-const MOST_MODEL: usize = 4 << 20;
-/// What a page that can be served begins with, and what it then begins with.
+const MAX_MODEL: usize = 4 << 20;
+/// The beginning of the page, and its replacement in a page that is served.
 const HEAD: [&str; 2] = ["<html lang=\"en\">", "<html lang=\"en\" data-served>"];
-/// What the page may do: run what stands in it, and ask this server.
+/// The content security policy: the page may run its own scripts and connect to this server.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; \
                       worker-src blob:; connect-src 'self'; img-src data: blob:; frame-src 'self'; base-uri 'none'; form-action 'none'";
 
-/// Runs the command: it ends by an interrupt.
+/// Runs the command, until it is interrupted.
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] where there is no page; [`Stop::Fault`] where the model cannot be read or the port is taken.
+/// [`Stop::Call`] if there is no page; [`Stop::Fault`] if the model cannot be read or the port is taken.
 pub fn run(arguments: &Arguments) -> Outcome {
     let page = page(arguments.page.as_deref())?;
     let model = &arguments.model;
-    files::text(model, MOST_MODEL)
+    files::text(model, MAX_MODEL)
         .map_err(|error| Stop::Fault(format!("cannot read {}: {error}", model.display())))?;
     let server = Server::http((Ipv4Addr::LOCALHOST, arguments.port))
         .map_err(|error| Stop::Fault(format!("cannot serve on port {}: {error}", arguments.port)))?;
@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     output::say(format_args!("serving {} at http://127.0.0.1:{port}/ (Ctrl-C ends)", model.display()));
     for request in server.incoming_requests() {
         let response = answer(&request, &page, model, port);
-        // Who has gone away needs no answer.
+        // A client that has gone away needs no answer.
         let _ = request.respond(response);
     }
     Ok(())
@@ -70,7 +70,7 @@ fn page(named: Option<&Path>) -> Outcome<String> {
         return Err(Stop::Call("it is not known where this program is: name the page by --page".to_owned()));
     };
     let cure = "`playground/build` in the repository makes it, as playground/dist/hodograph.html: put it there, or name it by --page";
-    let text = files::text(&path, MOST_PAGE)
+    let text = files::text(&path, MAX_PAGE)
         .map_err(|error| Stop::Call(format!("there is no page at {}: {error}; {cure}", path.display())))?;
     if !text.contains(HEAD[0]) || !text.contains("id=\"wasm\"") {
         return Err(Stop::Call(format!("{} is not the page of Hodograph: {cure}", path.display())));
@@ -82,11 +82,11 @@ type Answer = Response<std::io::Cursor<Vec<u8>>>;
 
 fn answer(request: &Request, page: &str, model: &Path, port: u16) -> Answer {
     let plain = |code: u16, text: &str| with(text.as_bytes().to_vec(), code, "text/plain; charset=utf-8");
-    // A name of another site that leads to this machine is no way in.
+    // Refuse requests under another host name that resolves to this machine (DNS rebinding).
     let hosts = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
     let host = request.headers().iter().find(|header| header.field.equiv("Host"));
     if !host.is_some_and(|header| hosts.iter().any(|host| host == header.value.as_str())) {
-        return plain(403, "this page is of 127.0.0.1 alone\n");
+        return plain(403, "this page is served to 127.0.0.1 only\n");
     }
     if !matches!(request.method(), Method::Get | Method::Head) {
         return plain(405, "only GET\n");
@@ -122,18 +122,30 @@ fn with(body: Vec<u8>, code: u16, kind: &str) -> Answer {
         .fold(response, Response::with_header)
 }
 
-/// The model as it is now, with its derivation if one is there, and what tells this from another.
+/// The model and its derivation, if there is one, as JSON; and a tag that changes with the answer.
 fn current(model: &Path) -> (String, String) {
     let name = model.file_name().unwrap_or_default().to_string_lossy();
-    let text = files::text(model, MOST_MODEL);
-    let kept = files::text(&place::beside(model), MOST_DERIVATION).unwrap_or_default();
+    let text = files::text(model, MAX_MODEL);
+    let imported = imported(model);
+    let kept = files::text(&place::beside(model), MAX_DERIVATION).unwrap_or_default();
     let mut hasher = DefaultHasher::new();
     text.as_ref().map_err(ToString::to_string).hash(&mut hasher);
     kept.hash(&mut hasher);
+    imported.iter().for_each(|(name, text)| (name, text.as_str()).hash(&mut hasher));
     let version = format!("{:016x}", hasher.finish());
     let answer = match text {
-        Ok(text) => json!({ "version": version, "name": name, "text": text, "derivation": kept }),
+        Ok(text) => {
+            json!({ "version": version, "name": name, "text": text, "files": imported, "derivation": kept })
+        }
         Err(error) => json!({ "version": version, "name": name, "fault": format!("{name}: {error}") }),
     };
     (version, answer.to_string())
+}
+
+/// The files that a model imports, by their paths from its folder.
+fn imported(model: &Path) -> serde_json::Map<String, serde_json::Value> {
+    let name = model.file_name().unwrap_or_default().to_string_lossy();
+    let source = files::model_as(name, model);
+    let texts = source.imported().map(|file| (file.name().to_owned(), file.text().unwrap_or("").into()));
+    texts.collect()
 }

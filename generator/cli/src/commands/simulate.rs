@@ -4,7 +4,6 @@ mod figure;
 mod inputs;
 mod lines;
 mod pictures;
-mod setup;
 mod summary;
 pub mod surfaces;
 
@@ -12,15 +11,17 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use hodograph::{ComponentKind, Mechanism as _};
-use hodograph_animation::{Span, Watch};
+use hodograph_animation::{Setup, Span, Watch};
 use hodograph_generator::artifact::place;
+use hodograph_generator::files;
+use hodograph_generator::format::plain;
 use hodograph_interpreter::{InterpretedMechanism, motion};
 use hodograph_simulation::{Event, ImpactsAtOnce, Options, Simulation, SimulationError};
 
 use self::lines::{Format, Lines};
 use self::pictures::{PictureFiles, Pictures};
 use self::surfaces::MotionSurfaces;
-use crate::answers::is_read;
+use crate::answers::is_terminal;
 use crate::derivation::{self, Limits};
 use crate::json::state::State;
 use crate::output;
@@ -45,15 +46,15 @@ pub struct Arguments {
     /// when to end, s [default: 10 s after the start, or when all is at rest]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     until: Option<f64>,
-    /// a line each so many seconds
+    /// time between two output lines, s
     #[arg(long, value_name = "SECONDS", default_value_t = motion::STEP, allow_hyphen_values = true)]
     step: f64,
     /// relative and absolute tolerance of the integration, at least 1e-16; bounces lower than it, in
     /// metres, end in contact [default: 1e-12]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// greatest step of the integration, s: without it 0.05 where something depends on time by
-    /// itself, else unbounded; inputs must not pass faster
+    /// greatest step of the integration, s: by default 0.05 if something depends on time explicitly, else
+    /// unbounded; it must be shorter than the changes of the inputs
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     max_step: Option<f64>,
     #[command(flatten)]
@@ -65,17 +66,16 @@ pub struct Arguments {
     /// interpolated
     #[arg(long, value_name = "FILE")]
     inputs: Option<PathBuf>,
-    /// what several contacts do that are struck at one time
+    /// how to treat several contacts that are struck at the same time
     #[arg(long, value_name = "WAY", default_value = "approaching")]
     together: TogetherArgument,
     /// compare the outcomes of all orders of up to four contacts struck at one time (`spread`, J)
     #[arg(long)]
     spread: bool,
-    /// of --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and contacts
-    /// not named have 1
+    /// with --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and the default is 1
     #[arg(long, value_name = "CONTACT=NUMBER")]
     stiffness: Vec<String>,
-    /// how states and events are written [default: tables at a terminal, else JSON]
+    /// the format of states and events [default: tables at a terminal, else JSON]
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
     #[command(flatten)]
@@ -84,31 +84,31 @@ pub struct Arguments {
     limits: Limits,
 }
 
-/// What contacts that are struck together do.
+/// The ways to treat contacts that are struck at the same time.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum TogetherArgument {
-    /// all that approach strike at once, by Poisson's hypothesis where all have the law poisson, else by
-    /// Moreau's law, with friction; what this presses together strikes next
+    /// all contacts that approach are struck at once, by Poisson's hypothesis if all have the law poisson,
+    /// else by Moreau's law, with friction; contacts that this presses together are struck next
     Approaching,
     /// one after the other, the fastest first
     Sequential,
-    /// all that touch strike at once, by the same laws
+    /// all closed contacts are struck at once, by the same laws
     Simultaneous,
-    /// all that touch at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction
-    /// only
+    /// all closed contacts at once, after Liu, Zhao and Brogliato, with the ratios of --stiffness; without
+    /// friction only
     Lzb,
     /// an error
     Stop,
 }
 
-/// Runs the command. Whatever is wrong is told on standard error: standard output holds the motion alone.
+/// Runs the command. Errors are reported on standard error; standard output holds the motion only.
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] for options that are wrong; [`Stop::Fault`] for what is wrong with the state or a surface,
-/// and where the motion cannot be followed: what came before is written.
+/// [`Stop::Call`] for mistakes in the options; [`Stop::Fault`] for mistakes in the state or a surface, and if
+/// the motion fails: its beginning is written.
 pub fn run(arguments: &Arguments) -> Outcome {
-    simulated(arguments).map_err(Stop::told)
+    simulated(arguments).map_err(Stop::on_standard_error)
 }
 
 fn simulated(arguments: &Arguments) -> Outcome {
@@ -126,7 +126,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
     arguments.pictures.check(&read)?;
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let state = arguments.state.state(&machine)?;
-    let until = arguments.until.unwrap_or(state.time + LASTS);
+    let until = arguments.until.unwrap_or(state.time + DEFAULT_DURATION);
     if until < state.time {
         return Err(Stop::Call(format!(
             "--until is {until}, before the start at t = {}: give a later time",
@@ -135,7 +135,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
     }
     let mechanism = machine.interpreted(&state)?;
     arguments.pictures.check_times(state.time, until)?;
-    let format = arguments.format.unwrap_or(if is_read() { Format::Table } else { Format::Json });
+    let format = arguments.format.unwrap_or(if is_terminal() { Format::Table } else { Format::Json });
     check_size(&mechanism, until - state.time, step, arguments.pictures.wanted(), format)?;
     let surfaces::Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &state.borrowed())?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
@@ -150,8 +150,8 @@ fn simulated(arguments: &Arguments) -> Outcome {
         ));
     }
     let driven = inputs::drive(&machine.mechanism, &arguments.input, arguments.inputs.as_deref())?;
-    let greatest = motion::greatest_step(&machine.program, driven.is_some());
-    // what is pushed by time or by inputs does not stay at rest
+    let greatest = mechanism.greatest_step(driven.is_some());
+    // a mechanism driven in time or by inputs does not stay at rest
     let at_rest = arguments.until.is_none() && greatest.is_infinite();
     let (drive, breaks) = driven.map_or_else(Default::default, |driven| (driven.drive, driven.breaks));
     let options = Options {
@@ -174,27 +174,28 @@ fn simulated(arguments: &Arguments) -> Outcome {
         ..Options::default()
     };
     let mut lines = Lines::new(&mechanism, format, arguments.pictures.wanted())?;
-    let setup = || setup::setup(&arguments.model, &machine.mechanism, &state, &options.surfaces);
+    let text = || plain(&files::model(&arguments.model));
+    let setup = || Setup::of(&machine.mechanism, &state.to_numeric(), &options.surfaces, text());
     let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state, setup);
     let progress = bar(state.time, until, format);
     let span = Span { start: state.time, until, step, at_rest };
     let done = follow(&mechanism, &state, options, &span, &mut lines, &mut pictures, &progress);
     progress.finish_and_clear();
-    // What was seen before the motion ended is worth seeing, above all where it ended with an error.
+    // The motion up to an error is written, too: it may show the cause.
     let told = lines.finish();
     pictures.save(&arguments.pictures, done.and(told))
 }
 
-/// Most steps: beyond, adding one changes no double.
-const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
-/// Most numbers that are kept of a motion until its end: some 200 MB of text.
-const MOST_NUMBERS: f64 = 2e7;
+/// Largest number of steps: above it, adding 1 does not change a double.
+const MAX_STEPS: f64 = 9_007_199_254_740_992.0;
+/// Largest number of values that are stored until the end of a motion: some 200 MB of text.
+const MAX_NUMBERS: f64 = 2e7;
 /// Bytes of a number in a page or a figure.
 const BYTES: f64 = 10.0;
-/// How long a motion lasts where nothing is said, s.
-const LASTS: f64 = 10.0;
-/// Refuses so many steps that their pictures or tables, which are kept until the end, would be larger than
-/// anything opens; and more than can be counted.
+/// The duration of a motion by default, s.
+const DEFAULT_DURATION: f64 = 10.0;
+/// Refuses step lengths that give more steps than can be counted, or so many that the stored pictures and
+/// tables would be too large to open.
 fn check_size(
     mechanism: &InterpretedMechanism,
     span: f64,
@@ -203,7 +204,7 @@ fn check_size(
     format: Format,
 ) -> Outcome {
     let steps = (span / step).ceil() + 1.0;
-    if steps > MOST_STEPS {
+    if steps > MAX_STEPS {
         return Err(Stop::Call(format!(
             "--step {step:e} is too short: {steps:.1e} steps; give a longer one"
         )));
@@ -211,10 +212,10 @@ fn check_size(
     let table = if format == Format::Table { 1 + mechanism.count(ComponentKind::Coordinate) } else { 0 };
     let each = if pictures { hodograph_animation::numbers(mechanism, mechanism.model()) } else { table };
     let numbers = steps * each as f64;
-    if numbers <= MOST_NUMBERS {
+    if numbers <= MAX_NUMBERS {
         return Ok(());
     }
-    let least = span / (MOST_NUMBERS / each as f64 - 2.0).max(1.0);
+    let least = span / (MAX_NUMBERS / each as f64 - 2.0).max(1.0);
     // rounded up to two digits
     let unit = 10_f64.powf(least.log10().floor() - 1.0);
     let without = if pictures { "leave --html, --plot and --mcap out" } else { "take --format csv" };
@@ -226,7 +227,7 @@ fn check_size(
     )))
 }
 
-/// Follows the motion and writes it.
+/// Simulates the motion and writes it.
 fn follow(
     mechanism: &InterpretedMechanism,
     state: &State,
@@ -285,9 +286,9 @@ impl From<SimulationError> for Stop {
     }
 }
 
-/// Shown where someone looks at standard error and not at lines that run.
+/// A progress bar. It is hidden if standard error is not a terminal, or if lines are written to a terminal.
 fn bar(start: f64, until: f64, format: Format) -> indicatif::ProgressBar {
-    if (is_read() && format != Format::Table) || !std::io::stderr().is_terminal() {
+    if (is_terminal() && format != Format::Table) || !std::io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
     let style = indicatif::ProgressStyle::with_template("{wide_bar} {msg} of {prefix} s");

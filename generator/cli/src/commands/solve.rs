@@ -5,18 +5,18 @@ use std::io::{self, IsTerminal};
 
 use clap::ValueEnum;
 use hodograph::methods::{self, Integration, Partial, Solution, Summation, Switch};
-use hodograph::{Hodograph, ReducedMatrix, Surface, snapshot_at};
+use hodograph::{Hodograph, Law, ReducedMatrix, Surface, snapshot_at};
 use nalgebra::Vector3;
 
 use crate::json::answer::{Answer, At};
-use crate::json::characteristics::{Asked, Characteristics, Form};
+use crate::json::characteristics::{Characteristics, CharacteristicsArgument, Form};
 use crate::json::{Failure, Fields, Json, lines::read_line};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 use crate::surface;
 
-/// A line longer than this is no collision.
-const LONGEST_LINE: usize = 1 << 20;
+/// The longest line, in bytes.
+const MAX_LINE: usize = 1 << 20;
 
 /// Solve collisions: one JSON object per line from standard input, one answer per line
 ///
@@ -36,32 +36,31 @@ pub struct Arguments {
     /// how to solve; all but `exact` are for comparison
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     pub method: Method,
-    /// `sum`, `irs`: steps to a unit of impulse, the paper's refinement k [default: 50]
+    /// `sum`, `irs`: number of steps per unit of impulse, the paper's refinement k [default: 50]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub steps: Option<u32>,
-    /// `sum`, `irs`: the unit of impulse, N s; the paper's is 1 [default: -v_n1 / (4 m_nn)]
+    /// `sum`, `irs`: the unit of impulse, N s; the paper has 1 [default: -v_n1 / (4 m_nn)]
     #[arg(long, value_name = "N s", value_parser = positive, conflicts_with = "tolerance")]
     pub unit: Option<f64>,
-    /// `integrate`, and `irs` instead of steps: error allowed per step, relative, 1e-14 to 0.1
-    /// [default: 1e-10]
+    /// `integrate`, and `irs` instead of steps: relative error per step, 1e-14 to 0.1 [default: 1e-10]
     #[arg(long, value_parser = tolerance, conflicts_with = "steps")]
     pub tolerance: Option<f64>,
-    /// `integrate`, and `irs` with --tolerance: the paper's epsilon_s, the slip below which what is
-    /// left of it is dropped, m/s [default: slip is followed to its end]
+    /// `integrate`, and `irs` with --tolerance: the paper's epsilon_s, the speed of slip below which slip is
+    /// set to zero, m/s [default: slip is followed to its end]
     #[arg(long, value_name = "m/s", value_parser = positive)]
     pub threshold: Option<f64>,
-    /// `exact`: also the state at these normal impulses, N s, beyond the end of the collision too
+    /// `exact`: also the state at these normal impulses, N s, which may be beyond the end of the collision
     #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub at: Vec<f64>,
     #[command(flatten)]
-    pub characteristics: Asked,
-    /// `exact`: quadratures that a collision may take; one that needs more has the error
+    pub characteristics: CharacteristicsArgument,
+    /// `exact`: the largest number of quadratures for a collision; one that needs more has the error
     /// `budget_exceeded` [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
     pub budget: Option<u32>,
 }
 
-/// The methods that find an outcome.
+/// The methods of solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
     /// the exact solver
@@ -89,7 +88,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl Arguments {
-    /// Names an option that the method does not have.
+    /// Reports an option that the method does not have.
     fn check(&self) -> Outcome {
         let misfit = match self.method {
             Method::Integrate | Method::Sum | Method::Irs if self.budget.is_some() => "--budget",
@@ -113,7 +112,7 @@ impl Arguments {
         let options = self.tolerance.map_or_else(Integration::default, Integration::with_tolerance);
         let slip = approach.y.hypot(approach.z);
         match self.threshold {
-            // Without slip there is nothing to drop.
+            // Without slip there is no threshold.
             Some(threshold) if slip > 0.0 => {
                 Integration { slip_threshold: threshold / slip, switch: Switch::AtThreshold, ..options }
             }
@@ -181,7 +180,7 @@ pub fn characteristics_of(
     approach: &Vector3<f64>,
     surface: &Surface<f64>,
 ) -> Result<Characteristics, Failure> {
-    // Unlike `solve` it locates the end of compression under every law.
+    // Unlike `solve`, this locates the end of compression under every law.
     let whole = Hodograph::new(matrix, approach, surface)?;
     Ok(Characteristics::of_contact(matrix)
         .with_friction(matrix, surface.mu, [approach.y, approach.z])
@@ -192,8 +191,7 @@ pub fn characteristics_of(
 ///
 /// # Errors
 ///
-/// [`Stop::Reported`] if a line had an error, [`Stop::Call`] for an option that the method does not
-/// have.
+/// [`Stop::Reported`] if a line had an error, [`Stop::Call`] for an option that the method does not have.
 pub fn run(arguments: &Arguments) -> Outcome {
     arguments.check()?;
     let mut input = io::stdin().lock();
@@ -203,7 +201,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         );
     }
     let (mut all_solved, mut line) = (true, Vec::new());
-    while let Some(complete) = read_line(&mut input, &mut line, LONGEST_LINE, "standard input")? {
+    while let Some(complete) = read_line(&mut input, &mut line, MAX_LINE, "standard input")? {
         let answer = if complete {
             if line.iter().all(u8::is_ascii_whitespace) {
                 continue;
@@ -211,7 +209,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             answer(&line, arguments)
         } else {
             Err(Failure::bad_json(format!(
-                "the line is longer than {LONGEST_LINE} bytes: give one collision per line"
+                "the line is longer than {MAX_LINE} bytes: give one collision per line"
             )))
         };
         all_solved &= answer.is_ok();
@@ -225,7 +223,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             Err(failure) => output::line(&failure.to_line()),
         };
         match written {
-            // There may be no end of lines: nothing more is read.
+            // The input may never reach an end of line, so nothing more is read.
             Err(Stop::ReaderGone) => break,
             other => other?,
         }
@@ -235,19 +233,17 @@ pub fn run(arguments: &Arguments) -> Outcome {
 
 fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
     let text = std::str::from_utf8(line)
-        .map_err(|error| Failure::bad_json(format!("this is no UTF-8 at byte {}", error.valid_up_to())))?;
+        .map_err(|error| Failure::bad_json(format!("this is not UTF-8 at byte {}", error.valid_up_to())))?;
     let case = Fields::new(Json::parse(text)?, "a collision")?;
     let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
     let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
     let mu = case.number("mu", "the coefficient of friction")?;
     let e = case.number("e", "the coefficient of restitution")?;
-    let law = match case.need("law", "\"newton\", \"poisson\" or \"stronge\"")? {
+    let names = Law::NAMES.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+    let law = match case.need("law", &format!("one of {names}"))? {
         Json::String(name) => surface::law(name)?,
         other => {
-            return Err(Failure::bad_json(format!(
-                "`law` must be \"newton\", \"poisson\" or \"stronge\", not {}",
-                other.sort()
-            )));
+            return Err(Failure::bad_json(format!("`law` must be one of {names}, not {}", other.sort())));
         }
     };
     let surface = Surface { mu, e, law };

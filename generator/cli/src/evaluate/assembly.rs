@@ -9,20 +9,21 @@ use super::{Machine, listed};
 use crate::json::state::State;
 use crate::json::{Failure, Kind};
 
-/// Coordinates that need no larger correction than this (rad or m, relative to their own size above 1) are
-/// consistent.
+/// Coordinates are consistent if the Newton step would change them by at most this (rad or m, relative to
+/// their size if that is above 1).
 const CONSISTENT: f64 = 1e-10;
-/// Points that are to be one may be this far apart, relative to their distance from O above 1 m.
-const OPEN: f64 = 1e-9;
+/// The largest distance between two points that shall coincide, m, relative to their distance from O if that
+/// is above 1 m.
+const MAX_LOOP_GAP: f64 = 1e-9;
 /// Where two configurations of a linkage meet, the residual grows with the square of the error, so that
-/// coordinates are known to the root of the rounding error only. Below this ratio of its singular values the
-/// Jacobian counts as singular.
-const FOLDED: f64 = 1e-7;
-/// Bound on the steps; from a sensible guess it takes less than ten.
-const STEPS: usize = 200;
+/// coordinates are known only to the root of the rounding error. The Jacobian counts as singular if its
+/// smallest singular value is below this part of the largest.
+const SINGULAR: f64 = 1e-7;
+/// Bound on the number of steps; from a sensible guess fewer than ten are needed.
+const MAX_STEPS: usize = 200;
 
-/// Finds the dependent coordinates by damped Newton steps, starting where they are. Consistent ones stay as
-/// they are.
+/// Finds the dependent coordinates by damped Newton steps, starting at their present values. Consistent
+/// coordinates are not changed.
 ///
 /// # Errors
 ///
@@ -40,12 +41,12 @@ pub fn assemble(machine: &Machine, state: &mut State) -> Result<(), Failure> {
         return Ok(());
     }
     let guess = state.clone();
-    let mut here = newton(machine, state, &dependent)?;
-    if !here.within(CONSISTENT) {
-        for _ in 0..STEPS {
-            let Some((trial, next)) = advance(machine, state, &here, &dependent) else { break };
-            (*state, here) = (trial, next);
-            if here.within(4.0 * f64::EPSILON) {
+    let mut current = newton(machine, state, &dependent)?;
+    if !current.within(CONSISTENT) {
+        for _ in 0..MAX_STEPS {
+            let Some((trial, next)) = advance(machine, state, &current, &dependent) else { break };
+            (*state, current) = (trial, next);
+            if current.within(4.0 * f64::EPSILON) {
                 break;
             }
         }
@@ -56,18 +57,18 @@ pub fn assemble(machine: &Machine, state: &mut State) -> Result<(), Failure> {
         dependent.iter().map(of).collect::<Vec<_>>().join(", ")
     };
     let names = listed(dependent.iter().map(|&index| coordinates[index].name.as_str()));
-    if here.closed && here.pivot < FOLDED {
+    if current.closed && current.pivot < SINGULAR {
         return Err(Failure::new(
             Kind::Of(Cause::SingularState),
             format!(
                 "the configuration equations cannot be solved for {names}: the linkage is at a dead centre where {} (a \
-                 relative pivot is {:.1e}, below {FOLDED:e}); change the other coordinates a little",
+                 relative pivot is {:.1e}, below {SINGULAR:e}); change the other coordinates a little",
                 values(state),
-                here.pivot,
+                current.pivot,
             ),
         ));
     }
-    if here.within(CONSISTENT) {
+    if current.within(CONSISTENT) {
         return Ok(());
     }
     Err(Failure::new(
@@ -76,44 +77,49 @@ pub fn assemble(machine: &Machine, state: &mut State) -> Result<(), Failure> {
             "the configuration equations have no solution for {names} near the guess {}: their residual stays {:?}; change \
              the other coordinates, or give a guess nearer to the configuration meant",
             values(&guess),
-            here.residual.as_slice(),
+            current.residual.as_slice(),
         ),
     ))
 }
 
-/// Where the equations stand.
-struct Here {
-    /// of the equations
+/// The configuration equations at the current coordinates.
+struct Iterate {
+    /// of the configuration equations
     residual: DVector<f64>,
-    /// the change of the dependent coordinates that would remove it
+    /// the Newton step of the dependent coordinates
     step: DVector<f64>,
-    /// the same relative to the size of the coordinates above 1, at most; with what no step removes at a
-    /// dead centre
+    /// the largest component of the step, relative to the size of the coordinate if that is above 1; at a
+    /// dead centre including the part of the residual that no step removes
     size: f64,
-    /// whether the residual is no more than rounding.
+    /// whether the residual is not larger than its rounding error
     closed: bool,
     /// least singular value of the Jacobian over the largest
     pivot: f64,
 }
 
-impl Here {
+impl Iterate {
     fn within(&self, bound: f64) -> bool {
         self.size <= bound
     }
 }
 
-/// Goes as far along the step as makes the residual smaller; `None` if that is nowhere.
-fn advance(machine: &Machine, state: &State, here: &Here, dependent: &[usize]) -> Option<(State, Here)> {
+/// Halves the step until the residual decreases; `None` if no step does.
+fn advance(
+    machine: &Machine,
+    state: &State,
+    current: &Iterate,
+    dependent: &[usize],
+) -> Option<(State, Iterate)> {
     let mut share = 1.0;
     while share > 1e-9 {
         let mut trial = state.clone();
-        for (&index, change) in dependent.iter().zip(here.step.iter()) {
+        for (&index, change) in dependent.iter().zip(current.step.iter()) {
             trial.coordinates[index] += share * change;
         }
         if let Ok(next) = newton(machine, &trial, dependent) {
-            // Near the solution rounding keeps the residual from falling, and then the next step is as small.
-            let falls = next.residual.norm() <= (1.0 - 0.1 * share) * here.residual.norm();
-            if falls || (next.within(CONSISTENT) && next.size < 0.5 * here.size) {
+            // Near the solution rounding prevents a smaller residual; then the next step must be as small.
+            let falls = next.residual.norm() <= (1.0 - 0.1 * share) * current.residual.norm();
+            if falls || (next.within(CONSISTENT) && next.size < 0.5 * current.size) {
                 return Some((trial, next));
             }
         }
@@ -122,7 +128,7 @@ fn advance(machine: &Machine, state: &State, here: &Here, dependent: &[usize]) -
     None
 }
 
-fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here, Failure> {
+fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Iterate, Failure> {
     let count = dependent.len();
     let wanted = [Quantity::ConfigurationResidual, Quantity::ConfigurationJacobian];
     let numbers = machine.evaluate(state, &wanted)?;
@@ -155,11 +161,11 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
         .iter()
         .zip(terms.iter())
         .all(|(r, terms)| r.abs() <= 64.0 * f64::EPSILON * terms.max(largest));
-    Ok(Here { residual, step, size, closed, pivot })
+    Ok(Iterate { residual, step, size, closed, pivot })
 }
 
-/// The least over the largest singular value of the matrix whose columns are scaled to length 1, so that
-/// units of coordinates do not matter. Rows are not scaled: at a dead centre one of them vanishes.
+/// The smallest singular value over the largest, of the matrix with its columns scaled to length 1, so that
+/// the units of coordinates do not matter. Rows are not scaled: at a dead centre one of them vanishes.
 fn conditioned(matrix: &DMatrix<f64>) -> f64 {
     let mut scaled = matrix.clone();
     for mut column in scaled.column_iter_mut() {
@@ -170,7 +176,7 @@ fn conditioned(matrix: &DMatrix<f64>) -> f64 {
     values.min() / values.max()
 }
 
-/// Points that velocity constraints hold together stay apart as they are, so they must begin as one.
+/// Checks that points that velocity constraints hold together coincide: the constraints keep their distance.
 ///
 /// # Errors
 ///
@@ -183,7 +189,7 @@ pub fn check_loops(machine: &Machine, state: &State) -> Result<(), Failure> {
         let (at, other) = (numbers.get(wanted[0]), numbers.get(wanted[1]));
         let apart: Vec<f64> = at.iter().zip(other).map(|(a, b)| a - b).collect();
         let size = at.iter().chain(other).fold(1.0_f64, |size, x| size.max(x.abs()));
-        if apart.iter().any(|distance| distance.abs() > OPEN * size) {
+        if apart.iter().any(|distance| distance.abs() > MAX_LOOP_GAP * size) {
             let [a, b] = [a, b].map(|point| &mechanism.points[point.0].name);
             return Err(Failure::new(
                 Kind::InconsistentState,

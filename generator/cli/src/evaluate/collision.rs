@@ -10,7 +10,7 @@ use crate::json::Failure;
 use crate::json::answer::Answer;
 use crate::json::state::State;
 
-/// What `collide` writes.
+/// The answer of `collide`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Collision<'a> {
     /// along n, t, s of the contact
@@ -22,8 +22,8 @@ pub struct Collision<'a> {
     pub kinetic_energy_change: f64,
 }
 
-/// Solves the collision of a contact, by the trait that simulations and generated modules have too; also its
-/// outcome.
+/// Solves the collision of a contact by the trait that simulations and generated modules use, too. Also
+/// returns the outcome.
 ///
 /// # Errors
 ///
@@ -34,7 +34,7 @@ pub fn collide<'a>(
     index: usize,
     surface: &Budgeted<f64>,
 ) -> Result<(Collision<'a>, CollisionOutcome<f64>), Failure> {
-    // A state that has no equations is refused with the place of the fault.
+    // If the equations have no solution in this state, the error names the place of the fault.
     let response = Quantity::Contact(index as u32, ContactQuantity::Response);
     machine.evaluate(state, &[Quantity::MassMatrix, Quantity::DependentSpeeds, response])?;
     let mechanism = machine.interpreted(state)?;

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::Numbers;
 
-/// Everything of a contact along n, t, s.
+/// The quantities of a contact along n, t, s.
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// n, t and s along N.x, N.y, N.z
@@ -16,7 +16,7 @@ pub struct Contact {
     pub gap: Option<f64>,
     /// v^R along N.x, N.y, N.z, m/s
     pub velocity: Vector3<f64>,
-    /// v^R along n, t, s, m/s: no slip along s, none against t
+    /// v^R along n, t, s, m/s: no component along s, and none against t
     pub slip: Vector3<f64>,
     /// partial velocities: rows n, t, s, columns independent speeds
     pub partials: [Vec<f64>; 3],
@@ -26,7 +26,7 @@ pub struct Contact {
     pub reduced: ReducedMatrix<f64>,
 }
 
-/// What must be evaluated for a [`Contact`].
+/// The quantities that are evaluated for a [`Contact`].
 pub const QUANTITIES: [ContactQuantity; 9] = [
     ContactQuantity::Normal,
     ContactQuantity::First,
@@ -40,7 +40,7 @@ pub const QUANTITIES: [ContactQuantity; 9] = [
 ];
 
 impl Contact {
-    /// The contact of that index, at these independent speeds. Its axes are those of its collision.
+    /// The contact with this index, at these independent speeds. Its axes are those of its collision.
     pub fn new(numbers: &Numbers, index: usize, speeds: &[f64]) -> Self {
         let vector = |quantity| Vector3::from(numbers.three(index, quantity));
         let mut six = [0.0; 6];

@@ -1,4 +1,4 @@
-//! Evaluates a model in a state: all numbers that `eval` writes.
+//! Evaluates a model in a state and returns the numbers that `eval` writes.
 
 pub mod assembly;
 pub mod collision;
@@ -14,13 +14,14 @@ use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::{ContactQuantity, Quantity};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::{Error, InterpretedMechanism};
 
 use crate::json::state::State;
 use crate::json::{Failure, Kind};
 
-/// A model and its program, before parameters are known: each state brings its own. Any quantity can be
-/// evaluated; [`Machine::interpreted`] fixes the parameters, and has the traits that a simulation needs.
+/// A model and its program, without fixed parameters: each state has its own. Every quantity can be
+/// evaluated; [`Machine::interpreted`] fixes the parameters and implements the traits that a simulation
+/// needs.
 #[derive(Clone, Debug)]
 pub struct Machine {
     /// the model
@@ -29,14 +30,14 @@ pub struct Machine {
     pub program: Program,
 }
 
-/// Numbers for some quantities.
+/// The values of some quantities.
 #[derive(Clone, Debug, Default)]
 pub struct Numbers {
     arrays: Vec<interpret::Array>,
 }
 
 impl Numbers {
-    /// A quantity by rows; empty if the mechanism has none (no dependent speeds, say).
+    /// A quantity by rows; empty if the mechanism does not have it (no dependent speeds, say).
     pub fn get(&self, quantity: Quantity) -> &[f64] {
         self.arrays.iter().find(|array| array.quantity == quantity).map_or(&[], |array| &array.values)
     }
@@ -65,11 +66,11 @@ impl Numbers {
 }
 
 impl Machine {
-    /// Numbers for those of the quantities that the mechanism has.
+    /// Values of those of the quantities that the mechanism has.
     ///
     /// # Errors
     ///
-    /// `singular_state`; `inconsistent_state` where the mass matrix was asked for and is none.
+    /// `singular_state`; `inconsistent_state` if the mass matrix is requested and not positive definite.
     pub fn evaluate(&self, state: &State, quantities: &[Quantity]) -> Result<Numbers, Failure> {
         let inputs = Inputs {
             parameters: state.parameters.clone(),
@@ -95,7 +96,7 @@ impl Machine {
                     let cure = self.cure(state);
                     Failure::new(
                         Kind::Of(Cause::SingularState),
-                        format!("{message} ({place}a divisor is {value:e}): {cure}"),
+                        format!("the state is singular: {message} ({place}a divisor is {value:e}): {cure}"),
                     )
                 }
                 other => Failure::new(Kind::Of(Cause::SingularState), other.to_string()),
@@ -112,8 +113,8 @@ impl Machine {
         Ok(Numbers { arrays: arrays.into_iter().map(positive_zeros).collect() })
     }
 
-    /// What to do where the equations cannot be evaluated in a state: parameters that were made zero are
-    /// the first suspects.
+    /// What to do if the equations cannot be evaluated in a state: parameters that were set to zero are the
+    /// first suspects.
     fn cure(&self, state: &State) -> String {
         let parameters = self.mechanism.parameters.iter().zip(&state.parameters);
         let made_zero = |parameter: &Variable| parameter.value.is_some_and(|value| value != 0.0);
@@ -133,15 +134,19 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// `inconsistent_state` where these parameters are impossible.
+    /// The cause for which these parameters are impossible, such as `singular_parameters`.
     pub fn interpreted(&self, state: &State) -> Result<InterpretedMechanism, Failure> {
         let all = self.mechanism.parameters.iter().zip(&state.parameters);
         let free: Vec<f64> = all.filter(|(parameter, _)| !parameter.fixed).map(|(_, value)| *value).collect();
-        InterpretedMechanism::with_parameters(self.mechanism.clone(), self.program.clone(), &free)
-            .map_err(|error| Failure::new(Kind::InconsistentState, error.to_string()))
+        InterpretedMechanism::with_parameters(self.mechanism.clone(), self.program.clone(), &free).map_err(
+            |error| match error {
+                Error::Parameters(error) => Failure::new(Kind::Of(error.cause()), error.to_string()),
+                error => Failure::new(Kind::InconsistentState, error.to_string()),
+            },
+        )
     }
 
-    /// Index of the contact of that name; without a name, of the only one.
+    /// The index of the contact with that name; without a name, of the only contact.
     ///
     /// # Errors
     ///
@@ -153,7 +158,7 @@ impl Machine {
         match name {
             Some(name) => names().position(|other| other == name).ok_or_else(|| {
                 let hint = crate::spelling::hint(name, names().collect::<Vec<_>>());
-                unknown(format!("{} has no contact `{name}`: {hint}", self.mechanism.name))
+                unknown(format!("there is no contact `{name}`: {hint}"))
             }),
             None if contacts.len() == 1 => Ok(0),
             None => {
@@ -164,11 +169,11 @@ impl Machine {
         }
     }
 
-    /// A state as given: quaternions and loops checked, dependent coordinates completed.
+    /// The state, after quaternions and loops have been checked, with completed dependent coordinates.
     ///
     /// # Errors
     ///
-    /// `impossible_body`, `inconsistent_state`, `singular_state`.
+    /// `impossible_mass`, `impossible_inertia`, `inconsistent_state`, `singular_state`.
     pub fn complete(&self, mut state: State) -> Result<State, Failure> {
         self.check_bodies(&state)?;
         self.normalise_quaternions(&mut state)?;
@@ -177,22 +182,27 @@ impl Machine {
         Ok(state)
     }
 
-    /// No body has a mass that is not positive, or some inertias: the generated constructor refuses the same
-    /// parameters.
+    /// Checks that every mass is positive and every inertia possible; the generated constructor refuses the
+    /// same parameters.
     fn check_bodies(&self, state: &State) -> Result<(), Failure> {
         let impossible = impossible_bodies(&self.mechanism, &state.to_numeric());
         let Some(found) = impossible.first() else { return Ok(()) };
         let body = &self.mechanism.bodies[found.body.0].name;
-        let message = if found.code == codes::MASS {
-            format!("with these parameters the mass of {body} {}: a mass is positive", found.what)
+        let what = &found.what;
+        let (cause, message) = if found.code == codes::MASS {
+            (
+                Cause::ImpossibleMass,
+                format!("the mass of `{body}` is not positive: with these parameters it {what}"),
+            )
         } else {
-            format!("with these parameters no body has the inertia of {body}: {}", found.what)
+            let message = format!("no body has the inertia of `{body}`: with these parameters {what}");
+            (Cause::ImpossibleInertia, message)
         };
-        Err(Failure::new(Kind::ImpossibleBody, message))
+        Err(Failure::new(Kind::Of(cause), message))
     }
 
-    /// The equations hold for unit quaternions only. Rounded ones are divided by their lengths; of others it
-    /// cannot be guessed which was meant.
+    /// Normalises quaternions that are rounded, since the equations hold for unit quaternions only. Others
+    /// are an error: it cannot be guessed what was meant.
     fn normalise_quaternions(&self, state: &mut State) -> Result<(), Failure> {
         for frame in &self.mechanism.frames {
             let Orientation::Quaternion(parts) = frame.orientation else { continue };
@@ -236,7 +246,7 @@ fn positive_definite(matrix: &interpret::Array) -> bool {
     true
 }
 
-/// A zero has no sign for a reader.
+/// Replaces negative zeros by positive ones for readers.
 fn positive_zeros(mut array: interpret::Array) -> interpret::Array {
     array.values.iter_mut().for_each(|value| *value += 0.0);
     array

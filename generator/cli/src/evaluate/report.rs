@@ -10,7 +10,7 @@ use crate::json::Failure;
 use crate::json::characteristics::Characteristics;
 use crate::json::state::State;
 
-/// Values under names, in their order.
+/// Values with their names, in order.
 #[derive(Clone, Debug)]
 pub struct Named<'a, T>(pub Vec<(&'a str, T)>);
 
@@ -24,7 +24,7 @@ impl<T: Serialize> Serialize for Named<'_, T> {
     }
 }
 
-/// Numbers under the names of quantities of a model.
+/// Numbers with the names of quantities of a model.
 pub fn named<'a>(
     quantities: impl IntoIterator<Item = &'a hodograph_generator::model::mechanism::Variable>,
     numbers: impl IntoIterator<Item = f64>,
@@ -32,7 +32,7 @@ pub fn named<'a>(
     Named(quantities.into_iter().map(|quantity| quantity.name.as_str()).zip(numbers).collect())
 }
 
-/// All of it.
+/// The answer of `eval`.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report<'a> {
     pub(super) speeds: Vec<&'a str>,
@@ -43,7 +43,7 @@ pub struct Report<'a> {
     pub(super) qdot: Named<'a, f64>,
     pub(super) dependent: Named<'a, f64>,
     pub(super) kinetic_energy: f64,
-    /// those that are offered by name, in the order of the table of quantities
+    /// quantities that are offered by name, in the order of the table of quantities
     #[serde(flatten)]
     pub(super) named: Named<'a, Vec<f64>>,
     pub(super) contacts: Named<'a, ContactReport>,
@@ -66,7 +66,7 @@ pub struct ContactReport {
 }
 
 impl ContactReport {
-    /// The characteristic quantities of the contact, with those that depend on friction if that is given.
+    /// The characteristic quantities of the contact, including those that depend on friction if mu is given.
     fn found(&self, mu: Option<f64>) -> Characteristics {
         let matrix = self.reduced.into();
         let found = Characteristics::of_contact(&matrix);
@@ -96,7 +96,7 @@ impl Report<'_> {
 
 impl From<Contact> for ContactReport {
     fn from(contact: Contact) -> Self {
-        // A zero has no sign for a reader.
+        // Replace negative zeros for readers.
         let plain = |vector: Vector3<f64>| vector.map(|number| number + 0.0).into();
         let [normal, tangent, binormal] = contact.axes.map(plain);
         ContactReport {

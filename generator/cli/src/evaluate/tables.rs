@@ -21,7 +21,7 @@ fn value(named: &Named<'_, f64>, name: &str) -> String {
     named.0.iter().find(|(other, _)| *other == name).map_or(String::new(), |(_, value)| number(*value))
 }
 
-/// A cell for each number.
+/// A row with a name and numbers.
 fn row(name: &str, numbers: &[f64]) -> Vec<String> {
     [name.to_owned()].into_iter().chain(numbers.iter().map(|&value| number(value))).collect()
 }
@@ -90,7 +90,7 @@ impl ContactReport {
 }
 
 impl Collision<'_> {
-    /// The tables of `collide`; `before` are all speeds before the collision that are known by name.
+    /// The tables of `collide`; `before` holds all known speeds before the collision.
     pub fn tables(&self, title: &str, model: &Mechanism, before: &[f64]) -> String {
         let answer = &self.answer;
         let mut along = Table::new(["along", "n", "t", "s"]);
@@ -120,7 +120,7 @@ impl Collision<'_> {
     }
 }
 
-/// A change, with its sign.
+/// A change, always with a sign.
 fn signed(value: f64) -> String {
     let text = number(value);
     if value > 0.0 { format!("+{text}") } else { text }

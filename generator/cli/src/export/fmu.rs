@@ -1,5 +1,5 @@
-//! A generated module as a functional mock-up unit of FMI 3.0: a crate with the functions of the standard, built here by
-//! cargo, its description, and the zip file of both.
+//! Exports a generated module as a functional mock-up unit (FMI 3.0): a crate with the functions of the
+//! standard, which cargo builds here, and the model description, packed in a zip file.
 
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
@@ -16,7 +16,7 @@ use super::names;
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// What a unit is made of.
+/// The parts of a unit.
 pub struct Unit<'a> {
     /// name of the module in Rust
     pub module: &'a str,
@@ -32,9 +32,9 @@ pub struct Unit<'a> {
     pub max_step: f64,
     /// the surfaces of the contacts that can close
     pub surfaces: &'a [(usize, Surface<f64>)],
-    /// what stands after `hodograph =` and `hodograph-fmu =` in the manifest
+    /// the values of the dependencies `hodograph` and `hodograph-fmu` in the manifest
     pub dependencies: [String; 2],
-    /// the file of locked versions, if there is one
+    /// the lock file for the build, if there is one
     pub lock: Option<PathBuf>,
 }
 
@@ -42,7 +42,7 @@ pub struct Unit<'a> {
 ///
 /// # Errors
 ///
-/// The motion cannot begin in the state of the model; cargo is missing, or cannot build the crate.
+/// The motion cannot start in the state of the model; cargo is missing, or cannot build the crate.
 pub fn file(unit: &Unit<'_>) -> Outcome<Vec<u8>> {
     let name = names::of_library(unit.module);
     let surfaces: Vec<(usize, f64, f64, &'static str)> =
@@ -51,7 +51,7 @@ pub fn file(unit: &Unit<'_>) -> Outcome<Vec<u8>> {
         if unit.max_step.is_finite() { format!("{:?}", unit.max_step) } else { "f64::INFINITY".to_owned() };
     let stated = format!("hodograph_fmu::Defaults {{ max_step: {step}, surfaces: &{surfaces:?} }}");
     let token = token(&[unit.expanded, &stated]);
-    // The surfaces live as long as the process, which writes one unit.
+    // Leaked: the process writes a single unit.
     let defaults = Defaults { max_step: unit.max_step, surfaces: Vec::leak(surfaces) };
     let described = description(unit.mechanism, &defaults, &name, &token, unit.docs).map_err(Stop::Fault)?;
     let library = format!(
@@ -75,7 +75,8 @@ pub fn file(unit: &Unit<'_>) -> Outcome<Vec<u8>> {
     zipped(&files).map_err(|error| Stop::Fault(format!("the unit cannot be packed: {error}")))
 }
 
-/// What an importer asks for this unit by: it changes with everything that the unit's variables and values follow from.
+/// The instantiation token, by which an importer identifies the unit: it changes with everything on which the
+/// variables and values of the unit depend.
 fn token(texts: &[&str]) -> String {
     let mut hash = Sha256::new();
     for text in texts {
@@ -107,7 +108,7 @@ fn documentation(unit: &Unit<'_>) -> String {
     )
 }
 
-/// The name that the standard has for this machine, and the extension of its shared libraries.
+/// The platform name of the standard for this machine, and the extension of its shared libraries.
 fn platform() -> Outcome<(String, &'static str)> {
     let (system, extension) = match std::env::consts::OS {
         "linux" => ("linux", "so"),
@@ -118,7 +119,8 @@ fn platform() -> Outcome<(String, &'static str)> {
     Ok((format!("{}-{system}", std::env::consts::ARCH), extension))
 }
 
-/// Builds the crate and reads the shared library. The folder is gone afterwards; that of `CARGO_TARGET_DIR` stays.
+/// Builds the crate and reads the shared library. The folder is removed afterwards; that of
+/// `CARGO_TARGET_DIR` stays.
 fn build(files: &[(String, Vec<u8>)], name: &str, lock: Option<&Path>) -> Outcome<Vec<u8>> {
     let fault = |what: &str, error: &dyn std::fmt::Display| Stop::Fault(format!("{what}: {error}"));
     let folder = tempfile::Builder::new().prefix("hodograph-fmu").tempdir();
@@ -162,7 +164,7 @@ fn build(files: &[(String, Vec<u8>)], name: &str, lock: Option<&Path>) -> Outcom
 fn zipped(files: &[(String, Vec<u8>)]) -> zip::result::ZipResult<Vec<u8>> {
     let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in files {
-        // No times: the same model gives the same bytes, as far as the compiler does.
+        // Without time stamps, so that the same model and compiler give the same bytes.
         archive.start_file(name, SimpleFileOptions::default().unix_permissions(0o644))?;
         archive.write_all(bytes)?;
     }

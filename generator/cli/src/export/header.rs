@@ -26,7 +26,20 @@ pub fn header(module: &Module, scalar: &str) -> String {
         "\n/** Friction and restitution of a contact. */\ntypedef struct {name}_surface {{\n    /** coefficient of friction, not negative */\n    {scalar} mu;\n    \
          /** coefficient of restitution, from 0 to 1 */\n    {scalar} e;\n    /** a hypothesis of restitution: {upper}_NEWTON .. */\n    int32_t law;\n}} {name}_surface;\n"
     );
-    // Plain records first: the others contain them.
+    let _ = write!(
+        out,
+        "\n/** Works, compressions and sensitivity of a collision. */\ntypedef struct {name}_impact {{\n    /** work of the contact impulse, in J */\n    {scalar} contact_work;\n    \
+         /** work of the normal impulse alone, in J */\n    {scalar} normal_work;\n    /** energy that the collision gained, in J; 0 where it gained none, beyond rounding */\n    {scalar} energy_gained;\n    \
+         /** how often compression ended: 1, or 2 if the bodies approached again during restitution */\n    int32_t compressions;\n    \
+         /** 1 where mu is so near to mu_c that path and derivatives change there, else 0 */\n    int32_t near_mu_c;\n    \
+         /** 1 where the outcome jumps with a little other input, else 0 */\n    int32_t grazing;\n    \
+         /** 1 where slip turns to either side of its direction of approach, else 0 */\n    int32_t unstable_direction;\n    \
+         /** 1 where there was no slip that has a direction, else 0 */\n    int32_t no_slip;\n    /** 1 at a dynamic jam, else 0 */\n    int32_t jam;\n}} {name}_impact;\n\n\
+         /** How far the mode of a closed contact is from its end: it holds while all are positive. Infinite where the mode does not end so. */\ntypedef struct {name}_margins {{\n    \
+         /** normal force, in N: at zero the contact lifts off */\n    {scalar} lambda_n;\n    /** f, in 1/kg: at zero a sliding contact jams */\n    {scalar} f;\n    \
+         /** mu lambda_n - |lambda_tan|, in N: at zero a sticking contact begins to slip */\n    {scalar} cone;\n    /** speed of slip, in m/s: at zero slip ends */\n    {scalar} s;\n}} {name}_margins;\n"
+    );
+    // Records of numbers first, since the others contain them.
     let (plain, rest): (Vec<&Record>, Vec<&Record>) =
         module.records.iter().partition(|record| record.is_plain());
     for record in plain.into_iter().chain(rest).filter(|record| !record.fields.is_empty()) {
@@ -79,7 +92,7 @@ pub fn header(module: &Module, scalar: &str) -> String {
 
 /// An enum whose constants count from zero.
 fn constants(upper: &str, what: &str, rows: &[Constant]) -> String {
-    // Without a comma after the last: C90 and C++98 know none there.
+    // Without a comma after the last constant, which C90 and C++98 do not allow.
     let rows: Vec<String> = rows
         .iter()
         .enumerate()
@@ -96,6 +109,9 @@ fn structure(module: &Module, scalar: &str, record: &Record) -> String {
             Form::Direction => format!("{}; zero where there is none", field.docs),
             Form::Path => format!("{}: one of the constants of {}_path", field.docs, module.name),
             Form::Mode => format!("{}: one of the constants of {}_mode", field.docs, module.name),
+            Form::Selection => format!("{}: one of the constants of {}_selection", field.docs, module.name),
+            Form::Impact => "works, compressions and sensitivity of the collision".to_owned(),
+            Form::Margins => "the quantities whose zeros end the mode".to_owned(),
             _ => field.docs.clone(),
         };
         let _ = write!(
@@ -109,7 +125,8 @@ fn structure(module: &Module, scalar: &str, record: &Record) -> String {
     out
 }
 
-/// A function's declaration without the semicolon; `budgeted`: with a number of quadratures after the surface.
+/// The declaration of a function without the semicolon; `budgeted`: with a number of quadratures after the
+/// surface.
 fn prototype(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) -> String {
     let mut arguments = vec![format!("const {} *mechanism", module.name)];
     for (name, form) in &routine.arguments {
@@ -131,12 +148,12 @@ fn prototype(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) -
     format!("int32_t {}_{}({})", module.name, names::routine(routine, budgeted), arguments.join(", "))
 }
 
-/// Lines of a comment.
+/// The lines of a comment.
 fn comment(text: &str, before: &str) -> String {
     safe(text).lines().map(|line| format!("{}\n", format!("{before}{line}").trim_end())).collect()
 }
 
-/// Text that does not end the comment that it stands in.
+/// Text without the end mark of a comment.
 fn safe(text: &str) -> String {
     text.replace("*/", "* /").replace("/*", "/ *")
 }

@@ -6,11 +6,12 @@ use super::module::{Form, Module, Routine};
 use super::{STATUSES, names};
 
 /// The text of `src/lib.rs`.
-pub fn library(module: &Module, scalar: &str) -> String {
+pub fn library(module: &Module, scalar: &str, motion: bool) -> String {
+    let simulation = if motion { "#[cfg(feature = \"simulation\")]\nmod simulation;\n" } else { "" };
     let name = &module.name;
     let mut out = format!(
         "//! The mechanism `{}` for C: see `include/{name}.h`.\n\n#![cfg_attr(not(feature = \"std\"), no_std)]\n#![allow(clippy::missing_safety_doc, clippy::useless_conversion)]\n\n\
-         mod mechanism;\n\nuse hodograph::nalgebra::Matrix3;\nuse hodograph::{{Cause, Law, Surface}};\n\
+         mod mechanism;\n{simulation}\nuse hodograph::{{Cause, Law, Surface}};\n\
          use mechanism::{} as model;\n\n",
         module.mechanism, module.path
     );
@@ -65,7 +66,7 @@ pub fn library(module: &Module, scalar: &str) -> String {
     out
 }
 
-/// The constants of the status, the status of a cause, and a surface with the number of its law.
+/// The constants of the status, the status of a cause, and the surface with a given number of the law.
 fn statuses(scalar: &str) -> String {
     let mut out = String::new();
     for (value, (name, docs)) in STATUSES.iter().enumerate() {
@@ -75,9 +76,27 @@ fn statuses(scalar: &str) -> String {
     let _ = write!(
         out,
         "\n/// The status of a cause: its number after the others.\nfn status(cause: Cause) -> i32 {{\n    {first} + i32::from(cause.number())\n}}\n\n\
-         fn surface_of(CSurface {{ mu, e, law }}: CSurface) -> Option<Surface<{scalar}>> {{\n    Law::numbered(law).map(|law| Surface {{ mu, e, law }})\n}}\n\n"
+         #[allow(dead_code)]\nfn surface_of(CSurface {{ mu, e, law }}: CSurface) -> Option<Surface<{scalar}>> {{\n    Law::numbered(law).map(|law| Surface {{ mu, e, law }})\n}}\n\n"
     );
+    out += &parts(scalar);
     out
+}
+
+/// What collisions and closed contacts answer beside vectors: works and sensitivity, margins, selection.
+fn parts(scalar: &str) -> String {
+    format!(
+        "/// Works, compressions and sensitivity of a collision as C has them.\n#[repr(C)]\n#[derive(Clone, Copy)]\npub struct CImpact {{\n    contact_work: {scalar},\n    \
+         normal_work: {scalar},\n    energy_gained: {scalar},\n    compressions: i32,\n    flags: [i32; 5],\n}}\n\n\
+         impl From<hodograph::Impact<{scalar}>> for CImpact {{\n    fn from(impact: hodograph::Impact<{scalar}>) -> Self {{\n        let of = impact.sensitivity;\n        \
+         let flags = [of.near_mu_c, of.grazing, of.unstable_direction, of.no_slip, of.jam];\n        CImpact {{\n            contact_work: impact.contact_work,\n            \
+         normal_work: impact.normal_work,\n            energy_gained: impact.energy_gained().unwrap_or(0.0),\n            compressions: impact.compressions as i32,\n            \
+         flags: flags.map(i32::from),\n        }}\n    }}\n}}\n\n\
+         /// The margins of a mode as C has them.\n#[repr(C)]\n#[derive(Clone, Copy)]\npub struct CMargins([{scalar}; 4]);\n\n\
+         impl From<hodograph::Margins<{scalar}>> for CMargins {{\n    fn from(margins: hodograph::Margins<{scalar}>) -> Self {{\n        \
+         CMargins(margins.named().map(|(_, margin)| margin.unwrap_or({scalar}::INFINITY)))\n    }}\n}}\n\n\
+         #[allow(dead_code)]\nfn selection(of: hodograph::Selection) -> i32 {{\n    match of {{\n        hodograph::Selection::Unique => 0,\n        \
+         hodograph::Selection::SeveralModes => 1,\n        hodograph::Selection::Indeterminate => 2,\n        _ => 3,\n    }}\n}}\n\n"
+    )
 }
 
 fn construction(module: &Module, scalar: &str) -> String {
@@ -116,7 +135,7 @@ fn function(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) ->
             Form::Surface => {
                 let _ = writeln!(
                     read,
-                    "    let Some({name}) = surface_of(unsafe {{ {name}.read() }}) else {{ return UNKNOWN_LAW }};"
+                    "    let Some({name}) = surface_of(unsafe {{ {name}.read() }}) else {{ return status(Cause::UnknownLaw) }};"
                 );
             }
             Form::Record(record) => {

@@ -1,22 +1,22 @@
-//! What of a generated module has a form in C: its structs and methods, selected by their types.
+//! The structs and methods of a generated module that can be represented in C, selected by their types.
 
 use hodograph_generator::emit::identifiers::ident;
 use hodograph_generator::emit::interface::{Interface, Signature, Struct, Type};
 
-/// A module with the parts that have a form in C.
+/// The part of a module that can be represented in C.
 #[derive(Clone, Debug)]
 pub struct Module {
     /// name of the module in Rust
     pub path: String,
-    /// the prefix of all names in C, at first the same
+    /// the prefix of all names in C, initially the Rust name
     pub name: String,
     /// name of the mechanism's type
     pub mechanism: String,
     /// documentation of the mechanism: the first paragraph
     pub docs: String,
-    /// numbers that the type of the mechanism holds
+    /// number of scalars in the type of the mechanism
     pub numbers: usize,
-    /// parameters, coordinates and speeds, and the answers with several parts
+    /// parameters, coordinates and speeds, and results with several parts
     pub records: Vec<Record>,
     /// routines
     pub routines: Vec<Routine>,
@@ -29,14 +29,14 @@ pub struct Record {
     pub name: String,
     /// its documentation
     pub docs: String,
-    /// the fields that have a form in C
+    /// the fields that can be represented in C
     pub fields: Vec<Field>,
-    /// whether the model states a value of it
+    /// whether the model states values for it
     pub stated: bool,
 }
 
 impl Record {
-    /// Whether it holds numbers alone, so that it is an array for Rust.
+    /// Whether it holds numbers only, so that it is an array in Rust.
     pub fn is_plain(&self) -> bool {
         self.fields.iter().all(|field| field.form == Form::Number)
     }
@@ -49,7 +49,7 @@ pub struct Field {
     pub name: String,
     /// its documentation
     pub docs: String,
-    /// what it is
+    /// its type
     pub form: Form,
 }
 
@@ -58,30 +58,30 @@ pub struct Field {
 pub struct Routine {
     /// its name in Rust
     pub name: String,
-    /// its name in C after that of the module, at first the same
+    /// its name in C after that of the module, initially the Rust name
     pub symbol: String,
     /// its documentation
     pub docs: String,
-    /// what it takes after the mechanism: names and forms
+    /// its arguments after the mechanism: names and types
     pub arguments: Vec<(String, Form)>,
-    /// what it answers
+    /// its result
     pub answer: Form,
-    /// whether its surface may have a budget
+    /// whether there is a variant with a budget
     pub budgeted: bool,
 }
 
-/// What has a form in C.
+/// The types that can be represented in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Form {
     /// a number
     Number,
-    /// so many numbers
+    /// a fixed number of numbers
     Vector(usize),
     /// rows and columns
     Matrix(usize, usize),
     /// the reduced matrix of a contact
     Reduced,
-    /// a vector of three that may be missing
+    /// an optional vector of three numbers
     Direction,
     /// a record of this name
     Record(String),
@@ -91,9 +91,15 @@ pub enum Form {
     Path,
     /// the mode of a closed contact
     Mode,
+    /// whether other modes fit
+    Selection,
+    /// works, compressions and sensitivity of a collision
+    Impact,
+    /// how far the mode of a closed contact is from its end
+    Margins,
 }
 
-/// The part of an interface that has a form in C.
+/// The part of an interface that can be represented in C.
 pub fn of(interface: &Interface) -> Module {
     let mut records: Vec<Record> = interface.structures.iter().map(record).collect();
     let routines: Vec<Routine> =
@@ -132,7 +138,7 @@ fn record(of: &Struct) -> Record {
     Record { name: of.name.clone(), docs: plain(&of.docs), fields, stated: of.stated }
 }
 
-/// A method, if all it takes and what it answers have a form in C.
+/// A method, if all its arguments and its result can be represented in C.
 fn routine(method: &Signature, records: &[Record]) -> Option<Routine> {
     let find = |name: &str| records.iter().find(|record| record.name == name);
     let argument = |name: &str, of: &Type| {
@@ -161,14 +167,14 @@ fn routine(method: &Signature, records: &[Record]) -> Option<Routine> {
     })
 }
 
-/// The form of a type, if it has one. What is empty has none: C forbids it.
+/// The form of a type, if it can be represented in C. C forbids empty structs and arrays.
 fn form(of: &Type) -> Option<Form> {
     match of {
         Type::Number => Some(Form::Number),
         Type::Vector(rows) | Type::Matrix(rows, 1) => (*rows > 0).then_some(Form::Vector(*rows)),
         Type::Matrix(rows, columns) => (*rows > 0 && *columns > 0).then_some(Form::Matrix(*rows, *columns)),
         Type::Optional(of) => (**of == Type::Vector(3)).then_some(Form::Direction),
-        // The derivatives of a contact hold arrays of matrices and what may be missing.
+        // The derivatives of a contact contain arrays of matrices and optional values.
         Type::Struct(name) => {
             let is_foreign = ["CollisionDerivative", "ContactDerivatives"].contains(&name.as_str());
             (!is_foreign).then(|| Form::Record(name.clone()))
@@ -177,15 +183,15 @@ fn form(of: &Type) -> Option<Form> {
         Type::Surface | Type::BudgetedSurface => Some(Form::Surface),
         Type::Path => Some(Form::Path),
         Type::Mode => Some(Form::Mode),
+        Type::Selection => Some(Form::Selection),
+        Type::Impact => Some(Form::Impact),
+        Type::Margins => Some(Form::Margins),
         Type::Array(..)
         | Type::Pair(..)
         | Type::ContactState
         | Type::Law
-        | Type::Impact
         | Type::ImpactDerivative
         | Type::Saltation(_)
-        | Type::Selection
-        | Type::Margins
         | Type::ContactOutcome => None,
     }
 }

@@ -1,4 +1,4 @@
-//! Names in C, and the texts of the values that cross the border.
+//! Names in C, and the code that converts values between C and Rust.
 
 use super::enums;
 use super::module::{Form, Module, Record, Routine};
@@ -11,20 +11,20 @@ const KEYWORDS: &str = "alignas alignof and and_eq asm atomic_cancel atomic_comm
      static_assert static_cast struct switch synchronized template this thread_local throw true try typedef typeid typename typeof typeof_unqual union \
      unsigned using virtual void volatile wchar_t while xor xor_eq";
 
-/// Macros that would take the place of a name.
+/// Macros that would replace a name.
 const MACROS: &str = include_str!("macros.txt");
 
-/// What the headers of the standard library declare.
+/// Names that the headers of the standard library declare.
 const LIBRARY: &str = include_str!("library_names.txt");
 
-/// Whether a list of words, with comments, has this one.
+/// Whether a list of words, which may contain comments, contains this one.
 fn lists(list: &str, name: &str) -> bool {
     let lines = list.lines().filter(|line| !line.starts_with('#'));
     lines.flat_map(str::split_whitespace).any(|word| word == name)
 }
 
-/// A name of the module as C and C++ may have it: keywords and macros get a line after them, and what
-/// compilers keep for themselves (`_Bool`, `__x`) an x before it.
+/// The name of an item in C and C++: keywords and macros get an underscore after them, and names that are
+/// reserved for compilers (`_Bool`, `__x`) an x before them.
 pub fn of(name: &str) -> String {
     let name = name.strip_prefix("r#").unwrap_or(name);
     let mut rest = name.chars().skip_while(|c| *c == '_');
@@ -34,13 +34,14 @@ pub fn of(name: &str) -> String {
     if lists(KEYWORDS, &name) || lists(MACROS, &name) { format!("{name}_") } else { name }
 }
 
-/// The name of a library, which is also that of a type: no function or type of the standard library either.
+/// The name of a library, which is also the name of a type, so that it must not be a name of the standard
+/// library either.
 pub fn of_library(name: &str) -> String {
     let name = of(name);
     if lists(LIBRARY, &name) { format!("{name}_") } else { name }
 }
 
-/// The names of the fields of a record, each once.
+/// The names of the fields of a record, all different.
 pub fn fields(record: &Record) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for field in &record.fields {
@@ -55,7 +56,7 @@ pub fn fields(record: &Record) -> Vec<String> {
     names
 }
 
-/// What a routine is called after the name of the module, and with a budget.
+/// The name of a routine after that of the module, with or without a budget.
 pub fn routine(routine: &Routine, budgeted: bool) -> String {
     format!("{}{}", routine.symbol, if budgeted { "_with_budget" } else { "" })
 }
@@ -68,7 +69,8 @@ pub fn declared_names(module: &Module) -> Vec<String> {
         all.push(format!("{name}_{what}"));
         all.extend(constants.iter().map(|(constant, _)| format!("{upper}_{constant}")));
     }
-    all.extend([format!("{upper}_H"), format!("{name}_surface"), name.clone(), format!("{name}_new")]);
+    let parts = ["surface", "impact", "margins", "new"].map(|part| format!("{name}_{part}"));
+    all.extend([format!("{upper}_H"), name.clone()].into_iter().chain(parts));
     for record in module.records.iter().filter(|record| !record.fields.is_empty()) {
         let of = self::record(module, &record.name);
         if record.stated {
@@ -83,13 +85,14 @@ pub fn declared_names(module: &Module) -> Vec<String> {
     all
 }
 
-/// Gives routines names that nothing else in the header has, also where only the case of letters is looked at:
-/// a contact `tip_with_budget` beside a contact `tip`, whose collision with a budget is
-/// `collide_tip_with_budget`.
-pub fn tell_apart(module: &mut Module) {
+/// Gives every routine a name that is unique in the header even if case is ignored: besides a contact `tip`
+/// there may be a contact `tip_with_budget`, while the collision of `tip` with a budget is
+/// `collide_tip_with_budget`. `others` are names of other headers of the library.
+pub fn make_unique(module: &mut Module, others: &[String]) {
     let bare = Module { routines: Vec::new(), ..module.clone() };
-    let mut taken: Vec<String> = declared_names(&bare).iter().map(|name| name.to_lowercase()).collect();
-    // what the model names keeps its name; a name with an end that is added here gives way
+    let own = declared_names(&bare);
+    let mut taken: Vec<String> = own.iter().chain(others).map(|name| name.to_lowercase()).collect();
+    // Names of the model stay; names with a suffix added here change.
     let plain: Vec<String> = module.routines.iter().map(|routine| routine.symbol.to_lowercase()).collect();
     for place in 0..module.routines.len() {
         let mut routine = module.routines[place].clone();
@@ -121,7 +124,7 @@ pub fn record(module: &Module, name: &str) -> String {
     format!("{}_{text}", module.name)
 }
 
-/// How C declares a value of a form under a name.
+/// The declaration in C of a value of this type.
 pub fn declared(module: &Module, scalar: &str, form: &Form, name: &str) -> String {
     match form {
         Form::Number => format!("{scalar} {name}"),
@@ -131,11 +134,13 @@ pub fn declared(module: &Module, scalar: &str, form: &Form, name: &str) -> Strin
         Form::Direction => format!("{scalar} {name}[3]"),
         Form::Record(record) => format!("{} {name}", self::record(module, record)),
         Form::Surface => format!("{}_surface {name}", module.name),
-        Form::Path | Form::Mode => format!("int32_t {name}"),
+        Form::Impact => format!("{}_impact {name}", module.name),
+        Form::Margins => format!("{}_margins {name}", module.name),
+        Form::Path | Form::Mode | Form::Selection => format!("int32_t {name}"),
     }
 }
 
-/// The Rust type with the memory of that declaration.
+/// The Rust type with the same memory layout.
 pub fn memory(module: &Module, scalar: &str, form: &Form) -> String {
     match form {
         Form::Number => scalar.to_owned(),
@@ -148,24 +153,29 @@ pub fn memory(module: &Module, scalar: &str, form: &Form) -> String {
             _ => format!("C{name}"),
         },
         Form::Surface => "CSurface".to_owned(),
-        Form::Path | Form::Mode => "i32".to_owned(),
+        Form::Impact => "CImpact".to_owned(),
+        Form::Margins => "CMargins".to_owned(),
+        Form::Path | Form::Mode | Form::Selection => "i32".to_owned(),
     }
 }
 
-/// The Rust expression that brings a value into that memory.
+/// The Rust expression that converts a value to that type.
 pub fn stored(module: &Module, form: &Form, value: &str) -> String {
     match form {
         Form::Number => value.to_owned(),
         Form::Vector(_) => format!("{value}.into()"),
-        // Rows after each other; the matrices of the module have columns after each other.
+        // C has rows one after the other, the matrices of the module have columns.
         Form::Matrix(..) => format!("{value}.transpose().into()"),
-        Form::Reduced => format!("Matrix3::from({value}).transpose().into()"),
+        Form::Reduced => format!("hodograph::nalgebra::Matrix3::from({value}).transpose().into()"),
         Form::Direction => format!("{value}.map_or([0.0; 3], Into::into)"),
         Form::Record(name) => match module.records.iter().find(|record| record.name == *name) {
             Some(record) if record.is_plain() => format!("{value}.into()"),
             _ => format!("C{name}::from({value})"),
         },
         Form::Surface => value.to_owned(),
+        Form::Impact => format!("CImpact::from({value})"),
+        Form::Margins => format!("CMargins::from({value})"),
+        Form::Selection => format!("selection({value})"),
         Form::Path | Form::Mode => format!("{value}.number().into()"),
     }
 }

@@ -20,7 +20,7 @@ pub struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// Nothing is wrong so far.
+    /// A checker without faults so far.
     pub fn new(file: &'a str, lines: &'a Lines<'a>) -> Self {
         Checker { file, lines, problems: Vec::new() }
     }
@@ -38,7 +38,7 @@ impl<'a> Checker<'a> {
         self.problem(attribute.range().start, &format!("{shown}: {message}"));
     }
 
-    /// A `<link>`: its name and its `<inertial>`.
+    /// Checks a `<link>`: its name and its `<inertial>`.
     pub fn link(&mut self, link: Node) {
         self.named(link);
         for inertial in self.at_most_one(link, "inertial") {
@@ -59,13 +59,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A `<joint>`: its name and type, where it is, what it connects, its axis and its damping.
+    /// Checks a `<joint>`: its name and type, its origin, the links that it connects, its axis and its
+    /// damping.
     pub fn joint(&mut self, joint: Node) {
         self.named(joint);
         match joint.attribute_node("type") {
             None => self.at_start(joint, &format!("{} has no attribute `type`", titled(joint))),
             Some(kind) if !TYPES.contains(&kind.value()) => {
-                let message = format!("this is no type of joint; URDF has {}", TYPES.join(", "));
+                let message = format!("there is no such type of joint; URDF has {}", TYPES.join(", "));
                 self.at_value(joint, kind, &message);
             }
             Some(_) => {}
@@ -106,7 +107,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The children of a kind, of which there should be no second one.
+    /// The children of a kind, of which there must be at most one.
     fn at_most_one<'n>(&mut self, node: Node<'n, 'n>, kind: &str) -> Vec<Node<'n, 'n>> {
         let found: Vec<_> = node.children().filter(|child| is(child, kind)).collect();
         if let [_, second, ..] = found[..] {
@@ -120,7 +121,7 @@ impl<'a> Checker<'a> {
             None if needed => self.at_start(node, &format!("{} has no attribute `{name}`", titled(node))),
             None => {}
             Some(attribute) => match attribute.value().trim().parse::<f64>() {
-                Err(_) => self.at_value(node, attribute, "this is no number"),
+                Err(_) => self.at_value(node, attribute, "this is not a number"),
                 Ok(number) if !number.is_finite() => {
                     self.at_value(node, attribute, "this number is not finite");
                 }
@@ -144,7 +145,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// An element as a reader finds it: with its name, or with what it belongs to.
+/// The name of an element in messages: with its own name, or with that of the link or joint it belongs to.
 fn titled(node: Node) -> String {
     let kind = node.tag_name().name();
     let owner = |node: &Node| matches!(node.tag_name().name(), "link" | "joint");
@@ -163,11 +164,11 @@ pub fn is(node: &Node, kind: &str) -> bool {
     node.is_element() && node.tag_name().name() == kind
 }
 
-/// The numbers of an attribute, all of them finite.
+/// The finite numbers of an attribute.
 ///
 /// # Errors
 ///
-/// What is wrong, as the end of a sentence about the element.
+/// The mistake, as the end of a sentence about the element.
 pub fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64; N], String> {
     let text = element.and_then(|element| element.attribute(name));
     let text = text.ok_or_else(|| format!("it has no attribute `{name}`"))?;
@@ -182,11 +183,11 @@ pub fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64
     read.ok_or_else(|| format!("`{name}=\"{text}\"` is not {wanted}"))
 }
 
-/// The `<origin>` of an element: its place, and roll, pitch and yaw of its axes; zero where nothing is said.
+/// The `<origin>` of an element: its place, and roll, pitch and yaw of its axes; zero by default.
 ///
 /// # Errors
 ///
-/// As [`numbers`].
+/// Those of [`numbers`].
 pub fn pose(element: Node) -> Result<(Vector3<f64>, Vector3<f64>), String> {
     let origin = element.children().find(|part| is(part, "origin"));
     let three = |name: &str| match origin.and_then(|origin| origin.attribute(name)) {

@@ -1,9 +1,9 @@
-//! Links that hang on joints elsewhere than at their origins.
+//! Links whose origins differ from those of their joints.
 
 use super::description::{Joint, Link};
 use super::poses::Pose;
 
-/// The links and joints of a description as they grow.
+/// Collects the links and joints of a description.
 #[derive(Default)]
 pub struct Chains {
     /// the links
@@ -13,20 +13,21 @@ pub struct Chains {
 }
 
 impl Chains {
-    /// A joint whose axes lie so in its parent and carry nothing of their own: the link that moves with it is
-    /// `joint.child`.
+    /// Adds a joint with this pose in its parent. The link `joint.child` has the axes and origin of the
+    /// joint.
     pub fn joint(&mut self, joint: Joint, pose: &Pose) {
         self.joints.push(Joint { offset: pose.at, rpy: pose.rpy(), ..joint });
     }
 
-    /// A link without mass at a joint, which something else is part of.
+    /// Adds a massless link at a joint, to which another link is fixed.
     pub fn massless(&mut self, at: &str, name: &str) {
         let (at, name) = (at.to_owned(), name.to_owned());
         self.links.push(Link { at, name, inertial: None, collisions: Vec::new() });
     }
 
-    /// A link whose origin lies so in the axes of the joint that carries `link.name`. Returns the name of the
-    /// link that has its axes: where they are not those of the joint, a link of its own is fixed there.
+    /// Adds a link with this pose in the axes of the joint that carries `link.name`. Returns the name of the
+    /// link that has its axes: if the pose is not the identity, an additional link that is fixed to the
+    /// joint.
     pub fn link(&mut self, link: Link, within: &Pose) -> String {
         if within.is_identity() {
             let name = link.name.clone();

@@ -1,11 +1,11 @@
-//! Reads the `<collision>` elements of links: boxes, cylinders and spheres; what else there is, is said.
+//! Reads the `<collision>` elements of links: boxes, cylinders and spheres. Others are reported.
 
 use nalgebra::Vector3;
 use roxmltree::Node;
 
 use super::attributes::{is, numbers, pose};
 
-/// What a shape of a model can be made of.
+/// The solids of which a model can build shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solid {
     /// lengths along x, y and z, m
@@ -16,25 +16,25 @@ pub enum Solid {
     Capsule([f64; 2]),
     /// semi-axes along x, y and z, m
     Ellipsoid([f64; 3]),
-    /// across z
+    /// the plane across z
     Plane,
     /// radius, m
     Sphere(f64),
 }
 
-/// A solid at a place in its link.
+/// A solid with its pose in its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
-    /// what it is
+    /// the solid
     pub solid: Solid,
-    /// where its middle is, m
+    /// its centre, m
     pub offset: Vector3<f64>,
     /// roll, pitch and yaw of its axes, rad
     pub rpy: Vector3<f64>,
 }
 
-/// The `<collision>` elements of a link that become shapes. Of each of the others a note says why not; `at`
-/// tells where an element stands.
+/// The `<collision>` elements of a link that become shapes. For each of the others a note gives the reason;
+/// `at` returns the place of an element in the file.
 pub fn read(link: Node, at: impl Fn(Node) -> String, notes: &mut Vec<String>) -> Vec<Collision> {
     let name = link.attribute("name").unwrap_or_default();
     let mut out = Vec::new();
@@ -60,8 +60,10 @@ fn collision(element: Node) -> Result<Collision, String> {
         }
         "cylinder" => Solid::Cylinder([length("radius")?, length("length")?]),
         "sphere" => Solid::Sphere(length("radius")?),
-        "mesh" => return Err("a mesh is no shape of a model; state a box, cylinder or sphere".to_owned()),
-        other => return Err(format!("<{other}> is no shape of a model")),
+        "mesh" => {
+            return Err("a mesh cannot be a shape of a model; state a box, cylinder or sphere".to_owned());
+        }
+        other => return Err(format!("<{other}> cannot be a shape of a model")),
     };
     Ok(Collision { solid, offset, rpy })
 }

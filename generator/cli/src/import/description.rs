@@ -1,5 +1,5 @@
-//! What a description of a robot says of its links and joints, whatever its format. Those of URDF are read
-//! here; their attributes are checked before (`attributes`): what is missing or no number is reported there.
+//! The links and joints of a robot description, independent of its format. Those of URDF are read here;
+//! `attributes` has checked their attributes before and reported missing numbers.
 
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::Node;
@@ -17,7 +17,7 @@ pub struct Robot {
     pub name: String,
     /// the acceleration of gravity, m/s^2
     pub gravity: Gravity,
-    /// whether its root is the ground itself, so that it never moves
+    /// whether its root is the ground, so that it never moves
     pub on_ground: bool,
     /// its links, in the order of the file
     pub links: Vec<Link>,
@@ -27,7 +27,7 @@ pub struct Robot {
 
 /// The acceleration of gravity.
 pub enum Gravity {
-    /// that of the standard, along -N.z: the description says nothing
+    /// the standard acceleration along -N.z, since the description does not state one
     Standard,
     /// along N.x, N.y and N.z, m/s^2
     Stated(Vector3<f64>),
@@ -35,13 +35,13 @@ pub enum Gravity {
 
 /// A link.
 pub struct Link {
-    /// where it stands: `robot.urdf:3:1`
+    /// its place in the file: `robot.urdf:3:1`
     pub at: String,
     /// its name as spelled
     pub name: String,
     /// its `<inertial>`, if it has one
     pub inertial: Option<Inertial>,
-    /// its solids that strike
+    /// its solids
     pub collisions: Vec<Collision>,
 }
 
@@ -61,7 +61,7 @@ pub struct Inertial {
 /// A joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// where it stands
+    /// its place in the file
     pub at: String,
     /// its name as spelled
     pub name: String,
@@ -75,7 +75,7 @@ pub struct Joint {
     pub offset: Vector3<f64>,
     /// roll, pitch and yaw of its axes in the parent link, rad
     pub rpy: Vector3<f64>,
-    /// in the joint's axes; x where nothing is said
+    /// in the joint's axes; x by default
     pub axis: Vector3<f64>,
     /// N m s/rad or N s/m
     pub damping: f64,
@@ -83,13 +83,13 @@ pub struct Joint {
     pub friction: f64,
     /// N m/rad or N/m
     pub stiffness: f64,
-    /// the coordinate at which its spring is without force, rad or m
+    /// the coordinate at which its spring exerts no force, rad or m
     pub spring_rests_at: f64,
-    /// the coordinates at the start, none where all are zero
+    /// the initial coordinates; empty if all are zero
     pub start: Vec<f64>,
     /// the joint that it mimics
     pub mimics: Option<Mimic>,
-    /// what drives it; `None`: an input of its own, as where a format has no actuators
+    /// its actuators; `None`: the joint has an input of its own, as in formats without actuators
     pub actuators: Option<Vec<Actuator>>,
 }
 
@@ -98,27 +98,28 @@ pub struct Joint {
 pub struct Mimic {
     /// the joint that it follows
     pub joint: String,
-    /// rad or m of this joint for each of the other
+    /// rad or m of this joint per rad or m of the other
     pub multiplier: f64,
     /// rad or m
     pub offset: f64,
 }
 
-/// What drives a joint: the force `gear (gain input + bias[0] + bias[1] gear q + bias[2] gear u)`.
+/// An actuator of a joint: it exerts the force `gear (gain input + bias[0] + bias[1] gear q + bias[2] gear
+/// u)`.
 #[derive(Clone, Debug)]
 pub struct Actuator {
     /// its name as spelled
     pub name: String,
     /// the force for an input of 1
     pub gain: f64,
-    /// a constant force, and those for each unit of the coordinate and of the speed
+    /// a constant force, and the forces per unit of the coordinate and of the speed
     pub bias: [f64; 3],
-    /// what its force is multiplied by
+    /// the factor of its force
     pub gear: f64,
 }
 
 impl Joint {
-    /// One that stands still, until it is said what it is.
+    /// A joint that is fixed; its reader sets the other properties.
     pub fn fixed(at: String, name: String, [parent, child]: [String; 2]) -> Self {
         Joint {
             at,
@@ -186,7 +187,7 @@ fn text(node: Option<Node>, attribute: &str) -> String {
     node.and_then(|node| node.attribute(attribute)).unwrap_or_default().to_owned()
 }
 
-/// The number of an attribute, 0 where there is none.
+/// The number of an attribute, 0 by default.
 fn number(node: Option<Node>, attribute: &str) -> f64 {
     numbers(node, attribute).map_or(0.0, |[number]| number)
 }

@@ -1,4 +1,4 @@
-//! Reads URDF: links and joints, and a report of the elements that are not used.
+//! Reads URDF: links and joints, and a report of unused elements.
 
 use roxmltree::Node;
 
@@ -12,7 +12,7 @@ use super::xml::Ignored;
 ///
 /// # Errors
 ///
-/// What is wrong with it as a robot description.
+/// The mistakes of the file as a robot description.
 pub fn read(
     root: Node,
     file: &str,

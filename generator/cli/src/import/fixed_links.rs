@@ -17,7 +17,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Why no body can have this inertia.
+    /// The reason why no body can have this inertia, if it is impossible.
     fn fault(&self) -> Option<String> {
         if self.mass <= 0.0 {
             return Some("its mass is 0, but its inertia is not: give a mass".to_owned());
@@ -45,20 +45,20 @@ impl MassProperties {
     }
 }
 
-/// A link that moves, with all that is fixed to it.
+/// A moving link, with all links fixed to it.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// the link that gives it its name and axes (index into `Tree::links`)
+    /// the link that gives the group its name and axes (index into `Tree::links`)
     pub link: usize,
-    /// the links fixed to it
+    /// the links fixed to that link
     pub fixed: Vec<usize>,
-    /// its inertia; `None`: it has none, or is the ground
+    /// its inertia; `None`: it has no inertia, or is the ground
     pub properties: Option<MassProperties>,
     /// whether it is the ground.
     pub ground: bool,
 }
 
-/// The groups of a robot in the order of their links, and which one each link belongs to.
+/// The groups of a robot in the order of their links, and the group of each link.
 #[derive(Clone, Debug)]
 pub struct Groups {
     /// the groups
@@ -67,7 +67,7 @@ pub struct Groups {
     pub of_link: Vec<usize>,
 }
 
-/// Sine and cosine of an angle, exact at right angles given to 10 digits.
+/// Sine and cosine of an angle; exact if the angle is a right angle to 10 digits.
 fn sine_cosine(angle: f64) -> (f64, f64) {
     let quarters = angle / std::f64::consts::FRAC_PI_2;
     if (quarters - quarters.round()).abs() > 1e-10 || quarters.abs() > 1e9 {
@@ -76,8 +76,8 @@ fn sine_cosine(angle: f64) -> (f64, f64) {
     [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][(quarters.round() as i64).rem_euclid(4) as usize]
 }
 
-/// The matrix of roll, pitch and yaw: columns are the turned axes.
-pub fn turned(rpy: &Vector3<f64>) -> Matrix3<f64> {
+/// The matrix of roll, pitch and yaw: its columns are the rotated axes.
+pub fn rotation_of(rpy: &Vector3<f64>) -> Matrix3<f64> {
     let [(sr, cr), (sp, cp), (sy, cy)] = [rpy.x, rpy.y, rpy.z].map(sine_cosine);
     let roll = Matrix3::new(1.0, 0.0, 0.0, 0.0, cr, -sr, 0.0, sr, cr);
     let pitch = Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
@@ -85,11 +85,11 @@ pub fn turned(rpy: &Vector3<f64>) -> Matrix3<f64> {
     yaw * pitch * roll
 }
 
-/// Makes the groups.
+/// Forms the groups.
 ///
 /// # Errors
 ///
-/// Inertias that no body can have, and links that would move without inertia.
+/// Impossible inertias, and links that would move without inertia.
 pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Groups, Vec<String>> {
     let mut problems = Vec::new();
     let mut groups: Vec<Group> = Vec::new();
@@ -107,7 +107,7 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
                 let (axes, origin) = poses[parent];
                 let group: usize = of_link[parent];
                 groups[group].fixed.push(here);
-                (group, (axes * turned(&link.joint.rpy), origin + axes * link.joint.offset))
+                (group, (axes * rotation_of(&link.joint.rpy), origin + axes * link.joint.offset))
             }
             None => {
                 let ground = link.joint.motion == Motion::Fixed;
@@ -128,12 +128,12 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
                     "{}: ignored the inertia of link `{}`, which is fixed to the ground",
                     document.links[link.index].at, link.name
                 )),
-                false => parts[group].push(carried(&part, &pose)),
+                false => parts[group].push(in_axes_of_group(&part, &pose)),
             }
         }
     }
     for (group, parts) in groups.iter_mut().zip(&parts) {
-        group.properties = joined(parts);
+        group.properties = combined_parts(parts);
     }
     let largest = groups
         .iter()
@@ -141,13 +141,13 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
         .map(|properties| properties.inertia.amax())
         .fold(0.0, f64::max);
     for group in &mut groups {
-        // Rounding that an exporter left where there is none.
+        // Drop rounding errors that an exporter left.
         if let Some(properties) =
             group.properties.as_mut().filter(|properties| properties.inertia.amax() <= 1e-12 * largest)
         {
             properties.inertia = Matrix3::zeros();
         }
-        // Files have odd numbers for small fixed parts; what counts is the body that they are part of.
+        // Files often have odd numbers for small fixed parts; only the combined body matters.
         if let Some(fault) = group.properties.as_ref().and_then(MassProperties::fault) {
             let link = &tree.links[group.link];
             let with = if group.fixed.is_empty() { "" } else { " with what is fixed to it" };
@@ -201,12 +201,12 @@ fn read_inertial(
         notes.push(format!("{place}: link `{}` has mass 0: taken as massless", link.name));
         return None;
     }
-    let turn = turned(rpy);
+    let turn = rotation_of(rpy);
     Some(MassProperties { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
 }
 
-/// The inertia in the axes of the group.
-fn carried(part: &MassProperties, (axes, origin): &(Matrix3<f64>, Vector3<f64>)) -> MassProperties {
+/// The inertia with respect to the axes of the group.
+fn in_axes_of_group(part: &MassProperties, (axes, origin): &(Matrix3<f64>, Vector3<f64>)) -> MassProperties {
     MassProperties {
         mass: part.mass,
         centre: origin + axes * part.centre,
@@ -214,8 +214,8 @@ fn carried(part: &MassProperties, (axes, origin): &(Matrix3<f64>, Vector3<f64>))
     }
 }
 
-/// All parts as one body, by the parallel-axis theorem.
-fn joined(parts: &[MassProperties]) -> Option<MassProperties> {
+/// The inertia of all parts as one body, by the parallel-axis theorem.
+fn combined_parts(parts: &[MassProperties]) -> Option<MassProperties> {
     if let [only] = parts {
         return Some(only.clone());
     }
@@ -241,8 +241,8 @@ fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {
     (matrix + matrix.transpose()) * 0.5
 }
 
-/// Two unit vectors across a third, right-handed: for x they are y and z, and so on round.
-pub fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+/// Two unit vectors perpendicular to a third, right-handed: for x they are y and z, and so on cyclically.
+pub fn perpendicular(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     for (index, unit) in [Vector3::x(), Vector3::y(), Vector3::z()].iter().enumerate() {
         if (axis - unit).norm() < 1e-12 {
             let round = [Vector3::y(), Vector3::z(), Vector3::x()];

@@ -2,14 +2,14 @@
 
 use super::description::Actuator;
 use super::formulas::bracketed;
-use super::text::{Moves, Writer};
+use super::text::{JointNames, Writer};
 use super::tree::Joint;
 
 impl Writer<'_> {
-    /// The force along the axis of a joint, if there is any: its input or actuators, less damping and spring.
+    /// The force along the axis of a joint, if any: that of its input or actuators, minus damping and spring.
     pub(super) fn effort(
         &mut self,
-        moves: &Moves,
+        moves: &JointNames,
         joint: &Joint,
         base: &str,
         units: [&str; 3],
@@ -53,7 +53,7 @@ impl Writer<'_> {
         let Actuator { name, gain, bias, gear } = actuator;
         let [position, rate, force] = units;
         let docs = |what: &str| format!("{what} of actuator `{name}`");
-        // a gain of one has the input as its force
+        // with a gain of one the input is the force
         let mut terms = Vec::new();
         if *gain != 0.0 {
             let input = self.input(&format!("ctrl_{name}"), if *gain == 1.0 { force } else { "1" });
@@ -79,7 +79,7 @@ impl Writer<'_> {
             if number == 0.0 {
                 continue;
             }
-            // both the coordinate and the force go through the gear
+            // the gear multiplies both the coordinate and the force
             let number = if factor.is_empty() { number } else { number * gear };
             let name = self.parameter(&format!("{letter}_{name}"), &unit, number, &docs("share"));
             terms.push(if factor.is_empty() { name } else { format!("{name}*{factor}") });

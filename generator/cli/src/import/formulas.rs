@@ -1,8 +1,8 @@
-//! Numbers, vectors and sums as the model language writes them.
+//! Writes numbers, vectors and sums in the model language.
 
 use nalgebra::Vector3;
 
-/// A sum as a factor of a product.
+/// Puts a sum in brackets, so that it can be a factor.
 pub fn bracketed(term: &str) -> String {
     if term.contains(' ') { format!("({term})") } else { term.to_owned() }
 }
@@ -13,7 +13,7 @@ pub fn decimal(number: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
-/// An angle, as a multiple of pi where it is one to 10 digits.
+/// An angle, as a multiple of pi if it is one to 10 digits.
 pub fn angle(number: f64) -> String {
     let twelfths = number / std::f64::consts::PI * 12.0;
     let count = twelfths.round();
@@ -26,7 +26,7 @@ pub fn angle(number: f64) -> String {
     if common == 12 { format!("{sign}{top}") } else { format!("{sign}{top}/{}", 12 / common) }
 }
 
-/// `rotate(..)` or `space(..)` for roll, pitch and yaw; `None` where nothing turns.
+/// `rotate(..)` or `space(..)` for roll, pitch and yaw; `None` if all are zero.
 pub fn rotation(rpy: &Vector3<f64>) -> Option<String> {
     let turns: Vec<(&str, f64)> =
         ["x", "y", "z"].into_iter().zip(rpy.iter().copied()).filter(|&(_, angle)| angle != 0.0).collect();
@@ -37,7 +37,7 @@ pub fn rotation(rpy: &Vector3<f64>) -> Option<String> {
     }
 }
 
-/// The axis of a rotation as the language writes it.
+/// The axis of a rotation in the model language.
 pub fn axis_word(axis: &Vector3<f64>) -> String {
     match aligned(axis) {
         Some((sign, letter)) => format!("{sign}{letter}"),
@@ -45,7 +45,7 @@ pub fn axis_word(axis: &Vector3<f64>) -> String {
     }
 }
 
-/// A vector given by numbers along the axes of a frame.
+/// A vector given by its components along the axes of a frame.
 pub fn combination(vector: &Vector3<f64>, axes: &str) -> String {
     match aligned(vector) {
         Some((sign, letter)) => format!("{sign}{axes}.{letter}"),
@@ -53,7 +53,7 @@ pub fn combination(vector: &Vector3<f64>, axes: &str) -> String {
     }
 }
 
-/// Which axis, and which way, if the vector is an axis.
+/// The sign and the name of the axis, if the vector is a coordinate axis.
 pub fn aligned(vector: &Vector3<f64>) -> Option<(&'static str, &'static str)> {
     let (index, largest) = vector.iter().copied().enumerate().find(|(_, number)| *number != 0.0)?;
     let alone = vector.iter().filter(|&&number| number != 0.0).count() == 1;

@@ -1,6 +1,6 @@
 //! Line and column of an offset in a text, by binary search.
 
-/// Where the lines of a text begin.
+/// The beginnings of the lines of a text.
 pub struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -13,7 +13,7 @@ impl<'a> Lines<'a> {
         Lines { text, starts }
     }
 
-    /// `3:14`: line and column of a byte, both from 1; the column counts characters.
+    /// `3:14`: line and column of a byte, both counted from 1; the column counts characters.
     pub fn place(&self, offset: usize) -> String {
         let line = self.starts.partition_point(|&start| start <= offset).max(1);
         let before = self.text.get(self.starts[line - 1]..offset);

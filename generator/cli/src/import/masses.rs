@@ -8,7 +8,7 @@ use super::collision::Solid;
 use super::description::Inertial;
 use super::poses::Pose;
 
-/// Volume, and the moments of inertia about its axes for a mass of 1; `None` of what has no volume.
+/// Volume of a solid, and its moments of inertia for a mass of 1; `None` for a plane.
 pub fn of_solid(solid: Solid) -> Option<(f64, Vector3<f64>)> {
     let flat =
         |[a, b, c]: [f64; 3], part: f64| Vector3::new(b * b + c * c, a * a + c * c, a * a + b * b) / part;
@@ -30,8 +30,9 @@ pub fn of_solid(solid: Solid) -> Option<(f64, Vector3<f64>)> {
     })
 }
 
-/// Several bodies as one, each with its mass, its moments about its own axes and its place.
-pub fn together(parts: &[(f64, Vector3<f64>, Pose)]) -> Option<Inertial> {
+/// Several bodies as one, given by their masses, their moments of inertia per mass about their own axes, and
+/// their poses.
+pub fn combined(parts: &[(f64, Vector3<f64>, Pose)]) -> Option<Inertial> {
     let mass: f64 = parts.iter().map(|(mass, ..)| mass).sum();
     if mass <= 0.0 {
         return None;
@@ -45,7 +46,7 @@ pub fn together(parts: &[(f64, Vector3<f64>, Pose)]) -> Option<Inertial> {
             (own + Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * *mass
         })
         .sum();
-    // rounding of rotations is no product of inertia
+    // products of inertia that are only rounding errors of rotations are zero
     let least = 1e-15 * inertia.amax();
     let inertia = inertia.map(|part| if part.abs() < least { 0.0 } else { part });
     Some(Inertial { mass, centre, rpy: Vector3::zeros(), inertia: (inertia + inertia.transpose()) * 0.5 })

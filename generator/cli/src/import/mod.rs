@@ -33,23 +33,23 @@ mod tests;
 #[cfg(test)]
 mod tests_of_formats;
 
-/// How to import.
+/// The options of an import.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// links at whose origins there is to be a contact
+    /// names of the links that get a contact at their origins
     pub contacts: Vec<String>,
-    /// whether the root link is free to move. `None`: if it has an inertia
+    /// whether the root link can move freely. `None`: if it has an inertia
     pub floating: Option<bool>,
-    /// whether parameters are folded in at build time.
+    /// whether parameters are `fixed`, that is, folded in at build time
     pub fixed_parameters: bool,
 }
 
-/// What an import delivers.
+/// The result of an import.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// the text of the model
     pub model: String,
-    /// what was ignored, chosen or renamed, one sentence each
+    /// everything that was ignored, chosen or renamed, one sentence each
     pub notes: Vec<String>,
 }
 
@@ -57,7 +57,7 @@ pub struct Imported {
 ///
 /// # Errors
 ///
-/// All that is wrong with the file, one sentence with its place each.
+/// All mistakes of the file, each in a sentence with its place.
 pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, Vec<String>> {
     let mut notes = Vec::new();
     let lines = lines::Lines::of(source);
@@ -70,17 +70,17 @@ pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, V
         found => {
             let at = lines.place(root.range().start);
             return Err(vec![format!(
-                "{file}:{at}: this describes no robot: its root is <{found}>, not <robot> (URDF), <mujoco> (MJCF) or <sdf>"
+                "{file}:{at}: this is not a robot description: its root is <{found}>, not <robot> (URDF), <mujoco> (MJCF) or <sdf>"
             )]);
         }
     };
-    let mut tree = tree::grow(&document, &mut notes)?;
+    let mut tree = tree::build(&document, &mut notes)?;
     match (document.on_ground, options.floating) {
         (false, floating) => tree.choose_base(floating, &mut notes),
         (true, None) => {}
         (true, Some(_)) => {
             return Err(vec![format!(
-                "{file}: --base is for URDF: {} says itself what is free",
+                "{file}: --base is for URDF only: {} states itself whether the base is free",
                 document.format
             )]);
         }

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-/// Words that a model must not declare: what the language gives, and Rust's keywords.
-const TAKEN: &[&str] = &[
+/// Names that a model must not declare: predefined names, and keywords of Rust.
+const RESERVED: &[&str] = &[
     "N", "O", "time", "pi", "_", "as", "break", "const", "continue", "crate", "else", "enum", "extern",
     "false", "fn", "for", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut", "pub", "ref",
     "return", "self", "Self", "static", "struct", "super", "trait", "true", "type", "unsafe", "use", "where",
@@ -11,24 +11,24 @@ const TAKEN: &[&str] = &[
     "priv", "try", "typeof", "unsized", "virtual", "yield",
 ];
 
-/// Hands out names, none twice.
+/// Assigns unique names.
 #[derive(Debug)]
 pub struct Names {
     taken: HashSet<String>,
     folded: HashSet<String>,
-    /// what had to be changed beyond replacing letters
+    /// the names that had to be changed beyond replacing characters
     pub renamed: Vec<String>,
 }
 
 impl Names {
-    /// Nothing is taken but what the language gives.
+    /// Only the reserved names are taken.
     pub fn new() -> Self {
-        let taken = TAKEN.iter().map(|word| (*word).to_owned()).collect();
+        let taken = RESERVED.iter().map(|word| (*word).to_owned()).collect();
         Names { taken, folded: HashSet::new(), renamed: Vec::new() }
     }
 
-    /// A free name that is as like `wish` as can be. Names that differ only by case and underscores count as
-    /// one, because they may become one in generated code.
+    /// A free name as similar to `wish` as possible. Names that differ only by case and underscores count as
+    /// equal, because they could become equal in generated code.
     pub fn give(&mut self, wish: &str) -> String {
         let first = identifier(wish);
         let mut name = first.clone();
@@ -46,7 +46,7 @@ impl Names {
     }
 }
 
-/// `text` with `_` for all that an identifier cannot have.
+/// `text` with `_` for every character that an identifier cannot have.
 pub fn identifier(text: &str) -> String {
     let name: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     match name.chars().next() {

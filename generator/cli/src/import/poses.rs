@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-/// Axes and an origin in those of something else.
+/// Position and orientation of axes relative to other axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     /// its columns are the axes
@@ -12,38 +12,39 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// That of the other itself.
+    /// The pose of the axes relative to themselves.
     pub fn identity() -> Self {
         Pose { turn: Matrix3::identity(), at: Vector3::zeros() }
     }
 
-    /// A place without a rotation.
+    /// A translation without rotation.
     pub fn place(at: Vector3<f64>) -> Self {
         Pose { at, ..Pose::identity() }
     }
 
-    /// What lies so in this one, in what this one lies.
+    /// The composition: the pose of `inner`, which is given relative to this pose, relative to the outer
+    /// axes.
     pub fn then(&self, inner: &Pose) -> Pose {
         Pose { turn: self.turn * inner.turn, at: self.at + self.turn * inner.at }
     }
 
-    /// That of the other in this one.
+    /// The inverse pose.
     pub fn inverse(&self) -> Pose {
         let turn = self.turn.transpose();
         Pose { turn, at: -(turn * self.at) }
     }
 
-    /// Whether it is that of the other, but for rounding.
+    /// Whether it is the identity up to rounding.
     pub fn is_identity(&self) -> bool {
         self.at.amax() < 1e-12 && (self.turn - Matrix3::identity()).amax() < 1e-12
     }
 
-    /// Roll, pitch and yaw, rad. What is zero but for rounding is zero.
+    /// Roll, pitch and yaw, rad. Angles that are zero up to rounding are zero.
     pub fn rpy(&self) -> Vector3<f64> {
         let m = &self.turn;
         let level = m[(0, 0)].hypot(m[(1, 0)]);
         let pitch = (-m[(2, 0)]).atan2(level);
-        // at a right angle of pitch roll and yaw are about one axis
+        // at a pitch of a right angle roll and yaw have the same axis
         let (roll, yaw) = match level > 1e-9 {
             true => (m[(2, 1)].atan2(m[(2, 2)]), m[(1, 0)].atan2(m[(0, 0)])),
             false => ((-m[(1, 2)]).atan2(m[(1, 1)]), 0.0),
@@ -60,7 +61,7 @@ impl Pose {
     }
 }
 
-/// The rotation of a quaternion, scalar part first; `None` where it is zero.
+/// The rotation of a quaternion, scalar part first; `None` for the zero quaternion.
 pub fn of_quaternion([w, x, y, z]: [f64; 4]) -> Option<Matrix3<f64>> {
     let length = (w * w + x * x + y * y + z * z).sqrt();
     let q = Quaternion::new(w, x, y, z) / length;
@@ -71,10 +72,10 @@ pub fn of_quaternion([w, x, y, z]: [f64; 4]) -> Option<Matrix3<f64>> {
 pub fn about(axis: usize, angle: f64) -> Matrix3<f64> {
     let mut rpy = Vector3::zeros();
     rpy[axis] = angle;
-    super::fixed_links::turned(&rpy)
+    super::fixed_links::rotation_of(&rpy)
 }
 
-/// The least rotation that takes z to a direction; `None` where that is zero.
+/// The smallest rotation that takes z to a direction; `None` for the zero vector.
 pub fn along_z(direction: Vector3<f64>) -> Option<Matrix3<f64>> {
     let to = direction.try_normalize(0.0)?;
     let turn = nalgebra::Rotation3::rotation_between(&Vector3::z(), &to);

@@ -1,5 +1,5 @@
-//! Reads SDF, the format of Gazebo: one model, whose links and joints state their places in axes of their
-//! choice.
+//! Reads SDF, the format of Gazebo: one model, whose links and joints state their poses relative to axes of
+//! their choice.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use roxmltree::Node;
 use super::chains::Chains;
 use super::collision::{Collision, Solid};
 use super::description::{Gravity, Inertial, Joint, Link, Robot};
-use super::fixed_links::turned;
+use super::fixed_links::rotation_of;
 use super::lines::Lines;
 use super::poses::Pose;
 use super::xml::Ignored;
@@ -18,7 +18,7 @@ use super::xml::Ignored;
 ///
 /// # Errors
 ///
-/// What is wrong with it, and what of it has no counterpart in a model, by name.
+/// The mistakes of the file, and the parts that have no counterpart in a model, by name.
 pub fn read(
     root: Node,
     file: &str,
@@ -55,7 +55,7 @@ pub fn read(
     Ok(Robot { file: file.to_owned(), format: "SDF", name, gravity, on_ground: true, links, joints })
 }
 
-/// A link, joint or frame: what it lies in, and how.
+/// A link, joint or frame: its pose, and the name of what the pose is relative to.
 struct Frame {
     within: String,
     pose: Pose,
@@ -95,7 +95,7 @@ impl Reader<'_> {
         format!("{}: <{}>{of}: {message}", self.at(node), node.tag_name().name())
     }
 
-    /// The numbers that an element has as its text.
+    /// The numbers in the text of an element.
     fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N], String> {
         let text = node.text().unwrap_or_default();
         let read: Option<Vec<f64>> = text
@@ -113,7 +113,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The `<pose>` of an element, and what it is in.
+    /// The `<pose>` of an element, and the name of what it is relative to.
     fn pose(&self, of: Node) -> Result<(Pose, Option<String>), String> {
         let Some(node) = child(of, "pose") else { return Ok((Pose::identity(), None)) };
         let within = node.attribute("relative_to").filter(|name| !name.is_empty()).map(str::to_owned);
@@ -128,10 +128,10 @@ impl Reader<'_> {
         if node.attribute("degrees") == Some("true") {
             angles = angles.map(f64::to_radians);
         }
-        Ok((Pose { turn: turned(&angles), at: Vector3::new(x, y, z) }, within))
+        Ok((Pose { turn: rotation_of(&angles), at: Vector3::new(x, y, z) }, within))
     }
 
-    /// The pose of a link, joint or frame in the model.
+    /// The pose of a link, joint or frame relative to the model.
     fn absolute(&self, name: &str, at: &str) -> Result<Pose, String> {
         let (mut pose, mut name) = (Pose::identity(), name);
         for _ in 0..=self.frames.len() {
@@ -145,7 +145,7 @@ impl Reader<'_> {
             pose = frame.pose.then(&pose);
             name = &frame.within;
         }
-        Err(format!("{at}: the place of `{name}` rests on itself"))
+        Err(format!("{at}: the pose of `{name}` is defined by itself"))
     }
 
     fn model(&mut self, model: Node) -> Chains {
@@ -170,7 +170,8 @@ impl Reader<'_> {
             }
         }
         let ends = |joint: Node| ["parent", "child"].map(|end| child(joint, end).map_or(String::new(), text));
-        // the link that moves with a joint lies in its axes: of the others there is the joint with the world
+        // A link that moves with a joint has the axes of the joint; a link without one gets a joint with the
+        // world.
         chains.massless(&self.at(model), &world);
         let mut axes_of: HashMap<String, String> = HashMap::from([(world.clone(), world.clone())]);
         for link in named("link") {
@@ -182,7 +183,7 @@ impl Reader<'_> {
         for joint in named("joint") {
             match self.joint(joint, ends(joint), place) {
                 Ok((mut joint, pose)) => {
-                    // an unknown name stays, and is reported with the links
+                    // an unknown name stays; it is reported with the links
                     joint.parent = axes_of.get(&joint.parent).cloned().unwrap_or(joint.parent);
                     chains.joint(joint, &pose);
                 }
@@ -192,7 +193,7 @@ impl Reader<'_> {
         chains
     }
 
-    /// Notes where a link, joint or frame is.
+    /// Records the pose of a link, joint or frame.
     fn frame(&mut self, node: Node) {
         let Some(name) = node.attribute("name") else {
             let problem = format!("{}: this <{}> has no name", self.at(node), node.tag_name().name());
@@ -215,7 +216,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Adds a link, and the joint with the world of one that nothing carries. Returns the link that has its axes.
+    /// Adds a link, and if nothing carries it a joint with the world. Returns the name of the link that has
+    /// its axes.
     fn link(
         &mut self,
         node: Node,
@@ -332,7 +334,7 @@ impl Reader<'_> {
                 Solid::Plane
             }
             other => {
-                let what = format!("<collision> of a {other}, which is no shape of a model");
+                let what = format!("<collision> of a {other}, which cannot be a shape of a model");
                 let at = self.at(shape);
                 self.ignored.count(what, || at);
                 return Ok(None);
@@ -341,7 +343,7 @@ impl Reader<'_> {
         Ok(Some(Collision { solid, offset: pose.at, rpy: pose.rpy() }))
     }
 
-    /// A joint, and where it is in the axes of its parent.
+    /// A joint, and its pose relative to its parent.
     fn joint(&mut self, node: Node, ends: [String; 2], model: Pose) -> Result<(Joint, Pose), String> {
         let at = self.at(node);
         let name = node.attribute("name").unwrap_or_default().to_owned();

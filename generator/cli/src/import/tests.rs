@@ -77,12 +77,12 @@ fn a_base_with_inertia_is_free() {
 }
 
 #[test]
-fn what_is_fixed_becomes_one_body() {
+fn fixed_links_become_one_body() {
     let body = link("base").to_owned()
         + link("tool")
         + joint("weld", "fixed", "base", "tool", "<origin xyz=\"0 0 1\" rpy=\"3.141592653589793 0 0\"/>");
     let (model, _) = model(&body, &Options::default());
-    // Two equal links end to end: the centre is where the second one's is mirrored to.
+    // Two equal links end to end: the mass centre is midway between their centres.
     has(&model, "m_base: kg = 4,");
     has(&model, "cz_base: m = 0.5,");
     has(&model, "Ixx_base: kg*m^2 = 0.2,");
@@ -90,7 +90,7 @@ fn what_is_fixed_becomes_one_body() {
 }
 
 #[test]
-fn odd_numbers_of_what_is_fixed_or_not_used_do_not_matter() {
+fn odd_inertias_of_fixed_or_unused_links_do_not_matter() {
     let speck = "<link name=\"speck\"><inertial><mass value=\"0\"/><inertia ixx=\"1e-6\" ixy=\"0\" ixz=\"0\" iyy=\"0\" \
                  iyz=\"0\" izz=\"0\"/></inertial><visual><geometry><mesh/></geometry></visual></link>\n";
     let body = "<material name=\"m\"><texture/></material><link name=\"base\"/>".to_owned()
@@ -110,7 +110,7 @@ fn odd_numbers_of_what_is_fixed_or_not_used_do_not_matter() {
 }
 
 #[test]
-fn mistakes_are_named_with_their_place() {
+fn mistakes_are_reported_with_their_place() {
     let two = |name: &str| "<link name=\"base\"/>\n".to_owned() + link("arm") + name;
     let cases = [
         (two(joint("j", "revolute", "base", "arms", "")), "unknown link `arms`: did you mean `arm`?"),
@@ -121,7 +121,7 @@ fn mistakes_are_named_with_their_place() {
             "r.urdf:4:1: joint `j`: it mimics the unknown joint `k`",
         ),
         (two(joint("j", "fixed", "base", "arm", "")), "nothing moves"),
-        (two(""), "link `arm` hangs on no joint"),
+        (two(""), "link `arm` has no parent joint"),
         (
             two(&(joint("a", "revolute", "base", "arm", "").to_owned()
                 + joint("b", "revolute", "arm", "base", ""))),
@@ -147,10 +147,10 @@ fn mistakes_are_named_with_their_place() {
             "no body has",
         ),
         (two("").replace("<mass value=\"2\"/>", ""), "has no <mass>"),
-        ("<link name=\"a\">".to_owned(), "this is no XML"),
+        ("<link name=\"a\">".to_owned(), "this is not XML"),
         (
             two("").replace("value=\"2\"", "value=\"two\""),
-            "r.urdf:3:57: `value=\"two\"` of <mass> of link `arm`: this is no number",
+            "r.urdf:3:57: `value=\"two\"` of <mass> of link `arm`: this is not a number",
         ),
         (
             two("").replace("ixx=\"0.1\"", "ixx=\"nan\""),
@@ -163,7 +163,7 @@ fn mistakes_are_named_with_their_place() {
         ),
         (
             two(joint("j", "screw", "base", "arm", "")),
-            "r.urdf:4:17: `type=\"screw\"` of joint `j`: this is no type of joint; URDF has fixed",
+            "r.urdf:4:17: `type=\"screw\"` of joint `j`: there is no such type of joint; URDF has fixed",
         ),
         (
             two(joint("j", "revolute", "base", "arm", "<origin rpy=\"0 0 right\"/>")),
@@ -193,13 +193,13 @@ fn mistakes_are_named_with_their_place() {
     let negative = two("").replace("value=\"2\"", "value=\"-1\"") + joint("j", "revolute", "base", "arm", "");
     assert_eq!(refused(&negative), "r.urdf:3:1: link `arm`: its mass is -1: give a positive one");
     let empty = import("", "r.urdf", &Options::default()).unwrap_err().join("\n");
-    assert!(empty.starts_with("r.urdf:1:1: this is no XML"), "{empty}");
+    assert!(empty.starts_with("r.urdf:1:1: this is not XML"), "{empty}");
     let other = import("<scene/>", "r.urdf", &Options::default()).unwrap_err().join("\n");
     assert!(other.contains("its root is <scene>"), "{other}");
 }
 
 #[test]
-fn names_that_clash_give_way() {
+fn names_that_clash_are_changed() {
     let body = "<link name=\"N\"/>".to_owned()
         + link("for")
         + link("q_a")
@@ -213,7 +213,7 @@ fn names_that_clash_give_way() {
 }
 
 #[test]
-fn large_and_deep_files_end() {
+fn large_and_deep_files_are_read_or_refused() {
     let numbered = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
     let links = numbered(3000, &|k| link(&format!("l{k}")).to_owned());
     let joints = numbered(2999, &|k| {
@@ -233,8 +233,8 @@ fn large_and_deep_files_end() {
     assert!(refused(&heavy).contains("too large a number"), "{}", refused(&heavy));
 }
 
-/// Boxes, cylinders and spheres of `<collision>` become shapes, of the body that a link is part of; the model
-/// that comes out is accepted. What becomes none is said by name.
+/// Boxes, cylinders and spheres of `<collision>` become shapes of the body of their link, in a model that is
+/// accepted. The others are reported by name.
 #[test]
 fn collision_geometry_becomes_shapes() {
     let solid = |origin: &str, geometry: &str| {
@@ -265,7 +265,10 @@ fn collision_geometry_becomes_shapes() {
         "arm_shape { of: arm, at: O + sz_arm_shape*arm_axes.z, cylinder: [r_arm_shape, l_arm_shape], axis: arm_shape_axes.z },",
     );
     has(&model, "tool_shape { of: arm, at: tool_origin + sx_tool_shape*arm_axes.x, sphere: r_tool_shape },");
-    assert!(notes.contains("ignored <collision> of link `arm`: a mesh is no shape of a model"), "{notes}");
+    assert!(
+        notes.contains("ignored <collision> of link `arm`: a mesh cannot be a shape of a model"),
+        "{notes}"
+    );
     assert!(notes.contains("ignored <collision> of link `arm`: `radius` must be positive"), "{notes}");
     let source = hodograph_generator::source::Source::file("two.mech", model.as_str());
     let checked = hodograph_generator::check::check(&source);
@@ -274,9 +277,9 @@ fn collision_geometry_becomes_shapes() {
     assert_eq!(mechanism.shapes.len(), 3);
 }
 
-/// A joint that mimics another has its coordinate as a multiple of that one.
+/// The coordinate of a joint that mimics another is a multiple of the other's.
 #[test]
-fn joints_follow_others() {
+fn joints_mimic_others() {
     let mimic = "<mimic joint=\"left\" multiplier=\"-2\" offset=\"0.1\"/>";
     let body = "<link name=\"base\"/>".to_owned()
         + link("right_finger")
@@ -301,7 +304,7 @@ fn joints_follow_others() {
 
 /// Links in another order than that of the tree keep their own solids.
 #[test]
-fn shapes_are_of_their_links_in_any_order() {
+fn shapes_belong_to_their_links_in_any_order() {
     let ball = "<collision><geometry><sphere radius=\"0.2\"/></geometry></collision></link>";
     let body = link("hand").replace("</link>", ball)
         + link("arm")

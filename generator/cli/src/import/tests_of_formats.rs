@@ -1,4 +1,5 @@
-//! Tests of the import of MJCF and SDF: what becomes of their elements, and what is refused, each by name.
+//! Tests of the import of MJCF and SDF: the model that each element becomes, and the elements that are
+//! refused, by name.
 
 use super::{Options, import};
 
@@ -60,7 +61,7 @@ fn a_joint_beside_the_origin_carries_a_frame_of_its_body() {
 }
 
 #[test]
-fn free_bodies_begin_where_they_are() {
+fn free_bodies_start_at_their_poses() {
     let body =
         "<body name=\"b\" pos=\"0 2 1\" euler=\"90 0 0\"><freejoint name=\"f\"/><geom size=\"0.1\"/></body>";
     let (model, notes) = imported(&mjcf(body, ""), "m.xml");
@@ -71,7 +72,7 @@ fn free_bodies_begin_where_they_are() {
 }
 
 #[test]
-fn what_mjcf_has_and_a_model_has_not_is_named() {
+fn elements_of_mjcf_without_counterpart_are_reported() {
     let equality = "<equality><connect name=\"loop\" body1=\"arm\" anchor=\"0 0 0\"/></equality>";
     let tendon = "<tendon><spatial name=\"rope\"/></tendon>";
     let arm = |from: &str, to: &str| mjcf(&ARM.replace(from, to), "");
@@ -95,8 +96,8 @@ fn what_mjcf_has_and_a_model_has_not_is_named() {
             "its mass is that of a mesh: state the <inertial> of body `arm`",
         ),
         (arm("name=\"arm\"", "name=\"arm\" quat=\"0 0 0 0\""), "its orientation has a direction of length 0"),
-        (arm("name=\"arm\"", "name=\"arm\" mocap=\"true\""), "moved from outside"),
-        (arm("<joint ", "<freejoint/><joint "), "only a body of the world itself"),
+        (arm("name=\"arm\"", "name=\"arm\" mocap=\"true\""), "motion is prescribed"),
+        (arm("<joint ", "<freejoint/><joint "), "only a child of the world"),
         (
             actuator("<muscle name=\"biceps\" joint=\"hip\"/>"),
             "<muscle> `biceps`: a muscle cannot be imported",
@@ -108,7 +109,7 @@ fn what_mjcf_has_and_a_model_has_not_is_named() {
         (actuator("<motor name=\"m\" tendon=\"t\"/>"), "only actuators of a `joint`"),
         (actuator("<general name=\"m\" joint=\"hip\" dyntype=\"filter\"/>"), "only `dyntype` none"),
         ("<mujoco><compiler settotalmass=\"3\"/></mujoco>".to_owned(), "`settotalmass` changes masses"),
-        ("<scene/>".to_owned(), "m.xml:1:1: this describes no robot: its root is <scene>"),
+        ("<scene/>".to_owned(), "m.xml:1:1: this is not a robot description: its root is <scene>"),
     ];
     for (source, expected) in cases {
         let said = refused(&source, "m.xml");
@@ -124,13 +125,13 @@ fn what_mjcf_has_and_a_model_has_not_is_named() {
         assert!(notes.contains(expected), "{expected}\n{notes}");
     }
     let deep = mjcf(&format!("{}{}", "<body>".repeat(400), "</body>".repeat(400)), "");
-    assert!(refused(&deep, "m.xml").contains("bodies in more than 200 bodies"));
+    assert!(refused(&deep, "m.xml").contains("nested more than 200 deep"));
     let options = Options { floating: Some(true), ..Options::default() };
     let said = import(&mjcf(ARM, ""), "m.xml", &options).unwrap_err().join("\n");
-    assert!(said.contains("--base is for URDF: MJCF says itself what is free"), "{said}");
+    assert!(said.contains("--base is for URDF only: MJCF states itself"), "{said}");
 }
 
-/// A link with its middle half a metre above its origin.
+/// A link with its mass centre half a metre above its origin.
 fn link(name: &str, pose: &str, more: &str) -> String {
     format!(
         "<link name=\"{name}\">{pose}<inertial><pose>0 0 0.5 0 0 0</pose><mass>2</mass><inertia><ixx>0.1</ixx>\
@@ -184,14 +185,14 @@ fn models_of_sdf_have_links_in_axes_of_their_choice() {
     has(&model, "hand_origin = wrist_point + q_wrist*arm_axes.z;");
     has(&model, "hand_frame_origin = hand_origin + oz_hand_frame*arm_axes.z;");
     assert!(notes.contains("ignored the inertia of link `base`"), "{notes}");
-    // nothing carries a link: it is free where it is
+    // a link without a joint is free at its pose
     let (model, _) = imported(&sdf(&link("ball", "<pose>0 0 3 0 0 0</pose>", "")), "m.sdf");
     accepted(&model);
     has(&model, "q_ball_z: m = 3,");
 }
 
 #[test]
-fn what_sdf_has_and_a_model_has_not_is_named() {
+fn elements_of_sdf_without_counterpart_are_reported() {
     let two = |more: &str| sdf(&[link("a", "", ""), link("b", "", ""), more.to_owned()].concat());
     let cases = [
         (two(&joint("j", "screw", "a", "b", "")), "m.sdf:4:1: <joint>: `j` has the type `screw`"),
@@ -201,7 +202,7 @@ fn what_sdf_has_and_a_model_has_not_is_named() {
             two(&joint("j", "revolute", "a", "b", "<pose>0 0 1</pose>")),
             "<pose> of joint `j`: `0 0 1` is not 6 finite numbers",
         ),
-        (sdf(&link("a", "<pose relative_to=\"a\"/>", "")), "the place of `a` rests on itself"),
+        (sdf(&link("a", "<pose relative_to=\"a\"/>", "")), "the pose of `a` is defined by itself"),
         (sdf(&link("a", "<pose relative_to=\"z\"/>", "")), "there is no frame, link or joint `z`"),
         ("<sdf><world/></sdf>".to_owned(), "there are 0 models"),
     ];

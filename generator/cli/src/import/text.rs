@@ -5,12 +5,12 @@ use nalgebra::Vector3;
 use super::Options;
 use super::collision::{Collision, Solid};
 use super::description::{Gravity, Robot};
-use super::fixed_links::{Groups, across};
+use super::fixed_links::{Groups, perpendicular};
 use super::formulas::{axis_word, combination, decimal, rotation, times, weighted};
 use super::names::{Names, mechanism};
 use super::tree::{Joint, Motion, Tree};
 
-/// The sections as they grow.
+/// The sections of the model while they are written.
 #[derive(Default)]
 struct Sections {
     parameters: Vec<String>,
@@ -28,9 +28,9 @@ struct Sections {
     contacts: Vec<String>,
 }
 
-/// What a link is called in the model.
+/// The frame and the origin of a link in the model.
 #[derive(Clone)]
-struct Called {
+struct LinkFrame {
     /// its frame
     axes: String,
     /// the point at its origin
@@ -44,7 +44,7 @@ pub struct Writer<'a> {
     names: Names,
     fixed: &'static str,
     out: Sections,
-    called: Vec<Called>,
+    called: Vec<LinkFrame>,
     bodies: Vec<Option<String>>,
 }
 
@@ -52,7 +52,7 @@ pub struct Writer<'a> {
 ///
 /// # Errors
 ///
-/// Contacts at links that do not exist or do not move.
+/// Contacts at links that do not exist or are fixed.
 pub fn write(
     tree: &Tree,
     groups: &Groups,
@@ -72,8 +72,8 @@ pub fn write(
     };
     let name = writer.names.give(&mechanism(&document.name));
     writer.gravity(&document.gravity);
-    // Coordinates, speeds and inputs first: their names are promised, others give way.
-    let mut motions: Vec<Moves> = tree.links.iter().map(|link| writer.declare(&link.joint)).collect();
+    // Coordinates, speeds and inputs first: their names are documented, so that others must give way.
+    let mut motions: Vec<JointNames> = tree.links.iter().map(|link| writer.declare(&link.joint)).collect();
     for (here, link) in tree.links.iter().enumerate() {
         if let Some(follows) = &link.joint.mimics {
             let moves_so = |other: &super::tree::Link| other.joint.name.as_ref() == Some(&follows.joint);
@@ -105,9 +105,9 @@ pub fn write(
     Ok(writer.finish(&name, document))
 }
 
-/// The names of what moves at a joint.
+/// The names of the coordinates, speeds and inputs of a joint.
 #[derive(Default)]
-pub struct Moves {
+pub struct JointNames {
     /// its coordinates
     pub coordinates: Vec<String>,
     /// its speeds
@@ -151,9 +151,9 @@ impl Writer<'_> {
         self.out.loads.push(format!("gravity: -{name}*N.z;"));
     }
 
-    /// The coordinate and speed of a joint that follows another.
-    fn follow(&mut self, joint: &Joint, other: &Joint, moves: &Moves) -> Moves {
-        let (Some(mimic), Some(base)) = (&joint.mimics, &joint.name) else { return Moves::default() };
+    /// The coordinate and speed of a joint that mimics another.
+    fn follow(&mut self, joint: &Joint, other: &Joint, moves: &JointNames) -> JointNames {
+        let (Some(mimic), Some(base)) = (&joint.mimics, &joint.name) else { return JointNames::default() };
         let unit = |joint: &Joint| if joint.motion == Motion::Turn { TURN } else { SLIDE };
         let [own, its] = [joint, other].map(|joint| unit(joint)[0]);
         let ratio = if own == its { "1".to_owned() } else { format!("{own}/{its}") };
@@ -167,7 +167,7 @@ impl Writer<'_> {
         }
         let input = self.input(&format!("tau_{base}"), unit(joint)[2]);
         let speeds = vec![format!("{factor}*{}", moves.speeds[0])];
-        Moves { coordinates: vec![coordinate], speeds, inputs: vec![input] }
+        JointNames { coordinates: vec![coordinate], speeds, inputs: vec![input] }
     }
 
     pub(super) fn input(&mut self, wish: &str, unit: &str) -> String {
@@ -177,9 +177,9 @@ impl Writer<'_> {
     }
 
     /// Declares the coordinates, speeds and inputs of a joint.
-    fn declare(&mut self, joint: &Joint) -> Moves {
+    fn declare(&mut self, joint: &Joint) -> JointNames {
         let base = joint.name.as_deref().unwrap_or("base");
-        let mut moves = Moves::default();
+        let mut moves = JointNames::default();
         let list: Vec<(&str, [&str; 3])> = match joint.motion {
             _ if joint.mimics.is_some() => return moves,
             Motion::Fixed => return moves,
@@ -222,18 +222,18 @@ impl Writer<'_> {
     }
 
     /// Frames, points and loads of a link.
-    fn place(&mut self, here: usize, moves: &Moves) {
+    fn place(&mut self, here: usize, moves: &JointNames) {
         let link = &self.tree.links[here];
         let joint = &link.joint;
         let parent = match link.parent {
             Some(parent) => self.called[parent].clone(),
-            None => Called { axes: "N".to_owned(), origin: "O".to_owned() },
+            None => LinkFrame { axes: "N".to_owned(), origin: "O".to_owned() },
         };
         let carrier = link.parent.map(|parent| self.groups.of_link[parent]);
         let on_ground = carrier.is_none_or(|group| self.groups.groups[group].ground);
         let reaction = if on_ground { None } else { Some(parent.axes.as_str()) };
         let base = joint.name.as_deref().unwrap_or(&link.name);
-        // The joint's own axes and origin, fixed in the parent.
+        // The axes and the origin of the joint, fixed in the parent.
         let turn = rotation(&joint.rpy);
         let axes = match (&turn, joint.motion) {
             (None, _) => parent.axes.clone(),
@@ -249,15 +249,15 @@ impl Writer<'_> {
         };
         let frame_wish = format!("{}_axes", link.name);
         let called = match joint.motion {
-            Motion::Fixed => Called { axes, origin },
+            Motion::Fixed => LinkFrame { axes, origin },
             Motion::Turn => {
                 let turned = format!("rotate({}, {})", axis_word(&joint.axis), moves.coordinates[0]);
                 let frame = self.frame(&frame_wish, &axes, &turned);
                 let torque = self.effort(moves, joint, base, TURN);
-                let called = Called { axes: frame, origin };
+                let called = LinkFrame { axes: frame, origin };
                 if let Some(torque) = torque {
                     let torque = times(&torque, &combination(&joint.axis, &called.axes));
-                    self.twist(&called, reaction, &torque);
+                    self.apply_torque(&called, reaction, &torque);
                 }
                 called
             }
@@ -269,11 +269,11 @@ impl Writer<'_> {
                 if let Some(force) = force {
                     self.out.loads.push(format!("force on {point}{reaction}: {};", times(&force, &axis)));
                 }
-                Called { axes, origin: point }
+                LinkFrame { axes, origin: point }
             }
-            Motion::Planar => self.place_planar(here, moves, &Called { axes, origin }, reaction),
-            Motion::Ball => self.place_ball(here, moves, Called { axes, origin }, reaction),
-            Motion::Free => self.place_free(here, moves, &Called { axes, origin }, reaction),
+            Motion::Planar => self.place_planar(here, moves, &LinkFrame { axes, origin }, reaction),
+            Motion::Ball => self.place_ball(here, moves, LinkFrame { axes, origin }, reaction),
+            Motion::Free => self.place_free(here, moves, &LinkFrame { axes, origin }, reaction),
         };
         self.called.push(called);
     }
@@ -281,36 +281,42 @@ impl Writer<'_> {
     fn place_planar(
         &mut self,
         here: usize,
-        moves: &Moves,
-        joint_axes: &Called,
+        moves: &JointNames,
+        joint_axes: &LinkFrame,
         carrier: Option<&str>,
-    ) -> Called {
+    ) -> LinkFrame {
         let link = &self.tree.links[here];
         let joint = &link.joint;
-        let directions = across(&joint.axis).map(|unit| combination(&unit, &joint_axes.axes));
+        let directions = perpendicular(&joint.axis).map(|unit| combination(&unit, &joint_axes.axes));
         let turned = format!("rotate({}, {})", axis_word(&joint.axis), moves.coordinates[2]);
         let axes = self.frame(&format!("{}_axes", link.name), &joint_axes.axes, &turned);
         let by = weighted(&moves.coordinates, &directions);
         let origin = self.point(&format!("{}_origin", link.name), &joint_axes.origin, &by);
-        let called = Called { axes, origin };
-        self.push(&called, joint_axes, carrier, &weighted(&moves.inputs, &directions));
+        let called = LinkFrame { axes, origin };
+        self.apply_force(&called, joint_axes, carrier, &weighted(&moves.inputs, &directions));
         let torque = times(&moves.inputs[2], &combination(&joint.axis, &called.axes));
-        self.twist(&called, carrier, &torque);
+        self.apply_torque(&called, carrier, &torque);
         called
     }
 
-    /// A joint that turns about all axes: its speeds are the components of the relative angular velocity along the
-    /// axes of what turns.
-    fn place_ball(&mut self, here: usize, moves: &Moves, base: Called, carrier: Option<&str>) -> Called {
+    /// A ball joint: its speeds are the components of the relative angular velocity along the axes of the
+    /// child.
+    fn place_ball(
+        &mut self,
+        here: usize,
+        moves: &JointNames,
+        base: LinkFrame,
+        carrier: Option<&str>,
+    ) -> LinkFrame {
         let link = &self.tree.links[here];
         let quaternion = format!("quaternion({})", moves.coordinates.join(", "));
         let axes = self.frame(&format!("{}_axes", link.name), &base.axes, &quaternion);
         let own = ["x", "y", "z"].map(|axis| format!("{axes}.{axis}"));
         let within = if base.axes == "N" { String::new() } else { format!(" in {}", base.axes) };
         self.out.angular_velocities.push(format!("{axes}{within} = {};", weighted(&moves.speeds, &own)));
-        let called = Called { axes, origin: base.origin };
+        let called = LinkFrame { axes, origin: base.origin };
         if !moves.inputs.is_empty() {
-            self.twist(&called, carrier, &weighted(&moves.inputs, &own));
+            self.apply_torque(&called, carrier, &weighted(&moves.inputs, &own));
         }
         called
     }
@@ -318,10 +324,10 @@ impl Writer<'_> {
     fn place_free(
         &mut self,
         here: usize,
-        moves: &Moves,
-        joint_axes: &Called,
+        moves: &JointNames,
+        joint_axes: &LinkFrame,
         carrier: Option<&str>,
-    ) -> Called {
+    ) -> LinkFrame {
         let link = &self.tree.links[here];
         let own = |axes: &str| ["x", "y", "z"].map(|axis| format!("{axes}.{axis}"));
         let quaternion = format!("quaternion({})", moves.coordinates[3..].join(", "));
@@ -331,8 +337,8 @@ impl Writer<'_> {
         let spin = weighted(&moves.speeds[3..], &own(&axes));
         let within = if joint_axes.axes == "N" { String::new() } else { format!(" in {}", joint_axes.axes) };
         self.out.angular_velocities.push(format!("{axes}{within} = {spin};"));
-        // Relative to the ground a free link has its speeds along its own axes; on a link that moves, along
-        // that link's.
+        // The speeds of a link that is free relative to the ground are along its own axes; those of one that
+        // is free relative to a moving link are along the axes of that link.
         let directions = match carrier {
             None => {
                 let speed = weighted(&moves.speeds, &own(&axes));
@@ -341,16 +347,22 @@ impl Writer<'_> {
             }
             Some(_) => own(&joint_axes.axes),
         };
-        let called = Called { axes, origin };
+        let called = LinkFrame { axes, origin };
         if let [_, _, _, turns @ ..] = &moves.inputs[..] {
-            self.push(&called, joint_axes, carrier, &weighted(&moves.inputs[..3], &directions));
-            self.twist(&called, carrier, &weighted(turns, &own(&called.axes)));
+            self.apply_force(&called, joint_axes, carrier, &weighted(&moves.inputs[..3], &directions));
+            self.apply_torque(&called, carrier, &weighted(turns, &own(&called.axes)));
         }
         called
     }
 
-    /// A force at a point that wanders on what carries it: the reaction acts where the point is.
-    fn push(&mut self, called: &Called, joint_axes: &Called, carrier: Option<&str>, force: &str) {
+    /// A force at a point that moves on the carrier; the reaction acts at the same place.
+    fn apply_force(
+        &mut self,
+        called: &LinkFrame,
+        joint_axes: &LinkFrame,
+        carrier: Option<&str>,
+        force: &str,
+    ) {
         let (point, from) = (&called.origin, &joint_axes.origin);
         match carrier {
             None => self.out.loads.push(format!("force on {point}: {force};")),
@@ -361,18 +373,18 @@ impl Writer<'_> {
         }
     }
 
-    fn twist(&mut self, called: &Called, carrier: Option<&str>, torque: &str) {
+    fn apply_torque(&mut self, called: &LinkFrame, carrier: Option<&str>, torque: &str) {
         let reaction = carrier.map_or(String::new(), |axes| format!(" from {axes}"));
         self.out.loads.push(format!("torque on {}{reaction}: {torque};", called.axes));
     }
 
-    /// The body or particle that a group of links is.
+    /// Writes the body or particle of a group of links.
     fn body(&mut self, here: usize) {
         let index = self.groups.of_link[here];
         let group = &self.groups.groups[index];
         let Some(properties) = group.properties.as_ref().filter(|_| group.link == here) else { return };
         let link = &self.tree.links[here];
-        let Called { axes, origin } = self.called[here].clone();
+        let LinkFrame { axes, origin } = self.called[here].clone();
         let name = self.names.give(&link.name);
         let mut docs = format!("link `{}`", link.name);
         if !group.fixed.is_empty() {
@@ -408,11 +420,11 @@ impl Writer<'_> {
         ));
     }
 
-    /// The shape that a solid of a link is.
+    /// Writes the shape of a solid of a link.
     fn shape(&mut self, here: usize, collision: &Collision) {
         let link = &self.tree.links[here];
         let group = self.groups.of_link[here];
-        let Called { axes, origin } = self.called[here].clone();
+        let LinkFrame { axes, origin } = self.called[here].clone();
         let name = self.names.give(&format!("{}_shape", link.name));
         let at = match self.offset(["sx", "sy", "sz"], &name, &collision.offset, &axes) {
             None => origin,
@@ -496,7 +508,7 @@ impl Writer<'_> {
         name
     }
 
-    /// `x_a*A.x + z_a*A.z` with a parameter for each component that is not zero; `None` if all are.
+    /// `x_a*A.x + z_a*A.z` with a parameter for each nonzero component; `None` if all are zero.
     fn offset(&mut self, letters: [&str; 3], of: &str, by: &Vector3<f64>, axes: &str) -> Option<String> {
         let mut terms = Vec::new();
         for ((letters, axis), &number) in letters.into_iter().zip(["x", "y", "z"]).zip(by.iter()) {

@@ -6,10 +6,10 @@ use nalgebra::Vector3;
 
 use super::description::{self, Actuator, Mimic, Robot};
 
-/// How a joint lets its child move.
+/// The motion that a joint allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// not at all
+    /// none
     Fixed,
     /// about the axis
     Turn,
@@ -26,9 +26,9 @@ pub enum Motion {
 /// A joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// its name as spelled; `None` for what connects the root with the ground
+    /// its name as spelled; `None` for the joint between ground and root
     pub name: Option<String>,
-    /// how it moves
+    /// the motion that it allows
     pub motion: Motion,
     /// its origin in the parent link, m
     pub offset: Vector3<f64>,
@@ -38,13 +38,13 @@ pub struct Joint {
     pub axis: Vector3<f64>,
     /// N m s/rad or N s/m
     pub damping: f64,
-    /// N m/rad or N/m, and the coordinate at which the spring is without force
+    /// N m/rad or N/m, and the coordinate at which the spring exerts no force
     pub spring: [f64; 2],
-    /// the coordinates at the start, none where all are zero
+    /// the initial coordinates; empty if all are zero
     pub start: Vec<f64>,
     /// the joint that its coordinate follows
     pub mimics: Option<Mimic>,
-    /// what drives it; `None`: an input of its own
+    /// its actuators; `None`: the joint has an input of its own
     pub actuators: Option<Vec<Actuator>>,
 }
 
@@ -55,13 +55,13 @@ pub struct Link {
     pub name: String,
     /// index of its description in the file
     pub index: usize,
-    /// the link that carries it (index into [`Tree::links`], always a lower one); `None`: the root
+    /// the link that carries it (index into [`Tree::links`], always lower); `None` for the root
     pub parent: Option<usize>,
     /// the joint that carries it
     pub joint: Joint,
 }
 
-/// A robot: every link after the one that carries it, branch by branch.
+/// A robot: every link comes after the one that carries it, branch by branch.
 #[derive(Clone, Debug)]
 pub struct Tree {
     /// the links
@@ -71,7 +71,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Decides whether the root is free, of a description that leaves it open.
+    /// Decides whether the root is free, if the description does not say so.
     pub fn choose_base(&mut self, floating: Option<bool>, notes: &mut Vec<String>) {
         let root = &mut self.links[0];
         let free = floating.unwrap_or(self.root_has_inertial);
@@ -91,12 +91,12 @@ impl Tree {
     }
 }
 
-/// Makes the tree.
+/// Builds the tree.
 ///
 /// # Errors
 ///
-/// All that keeps it from being one, and all joints that cannot be imported.
-pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<String>> {
+/// Everything that prevents a tree, and all joints that cannot be imported.
+pub fn build(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<String>> {
     let mut problems = Vec::new();
     let known = links(document, &mut problems);
     let mut carried_by: HashMap<usize, usize> = HashMap::new();
@@ -177,7 +177,7 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
     Ok(Tree { links, root_has_inertial: document.links[root].inertial.is_some() })
 }
 
-/// Joints that follow others.
+/// Checks joints that mimic others.
 fn mimics(document: &Robot, joints: &[Joint]) -> Result<(), Vec<String>> {
     let mut problems = Vec::new();
     for (joint, description::Joint { at, name, .. }) in joints.iter().zip(&document.joints) {
@@ -220,7 +220,7 @@ fn links<'a>(document: &'a Robot, problems: &mut Vec<String>) -> HashMap<&'a str
     known
 }
 
-/// The one link that hangs on no joint.
+/// The only link without a parent joint.
 fn root(document: &Robot, carried_by: &HashMap<usize, usize>) -> Result<usize, Vec<String>> {
     let roots: Vec<usize> = (0..document.links.len()).filter(|link| !carried_by.contains_key(link)).collect();
     match roots[..] {
@@ -230,7 +230,7 @@ fn root(document: &Robot, carried_by: &HashMap<usize, usize>) -> Result<usize, V
             document.links[0].at
         )]),
         [first, second, ..] => Err(vec![format!(
-            "{}: link `{}` hangs on no joint, nor does `{}` ({}): connect all but one",
+            "{}: link `{}` has no parent joint, nor has `{}` ({}): connect all but one",
             document.links[second].at,
             document.links[second].name,
             document.links[first].name,
@@ -253,7 +253,7 @@ fn read_joint(
         "planar" => Motion::Planar,
         "ball" => Motion::Ball,
         "floating" => Motion::Free,
-        // the readers have refused all others but "fixed"
+        // The readers have refused all other types but "fixed".
         _ => Motion::Fixed,
     };
     let description::Joint { offset, rpy, mut axis, mut damping, mut stiffness, .. } = *joint;
@@ -284,7 +284,7 @@ fn read_joint(
     }
     if matches!(motion, Motion::Turn | Motion::Slide | Motion::Planar) {
         let length = axis.norm();
-        // Six digits are what exporters write; anything further off is another axis or a mistake.
+        // Exporters write six digits; a larger deviation is a mistake.
         let is_unit = (length - 1.0).abs() <= 1e-5;
         if !is_unit {
             let [x, y, z] = joint.axis.into();

@@ -19,19 +19,19 @@ pub struct Answer {
     /// work of the normal impulse (35b), J
     #[serde(rename = "dEn")]
     pub normal_work: f64,
-    /// the phases gone through
+    /// the phases of the collision
     pub path: &'static [&'static str],
-    /// how often compression ended
+    /// number of compression phases
     pub compressions: u32,
-    /// why a little change of the input may change the outcome by much
+    /// why a small change of the input may change the outcome considerably
     pub sensitivity: Vec<&'static str>,
-    /// the steps that a method other than the exact one took
+    /// the number of steps of a method other than `exact`
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steps: Option<u32>,
-    /// the states at the normal impulses that were asked for
+    /// the states at the requested normal impulses
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<At>,
-    /// the characteristic quantities, if they were asked for
+    /// the characteristic quantities, if requested
     #[serde(skip_serializing_if = "Option::is_none")]
     pub characteristics: Option<Characteristics>,
 }
@@ -49,7 +49,7 @@ pub struct At {
     /// work of the normal impulse so far, J
     #[serde(rename = "dEn")]
     pub normal_work: f64,
-    /// what the contact does
+    /// the mode of the contact
     pub motion: &'static str,
 }
 
@@ -74,7 +74,7 @@ impl TryFrom<&Impact<f64>> for Answer {
 
     /// # Errors
     ///
-    /// `not_finite` where the outcome is out of the range of doubles.
+    /// `not_finite` if the outcome is out of the range of doubles.
     fn try_from(impact: &Impact<f64>) -> Result<Self, Failure> {
         let works = [impact.contact_work, impact.normal_work];
         if !impact.impulse.iter().chain(impact.velocity.iter()).chain(&works).all(|number| number.is_finite())
@@ -84,7 +84,7 @@ impl TryFrom<&Impact<f64>> for Answer {
                 "the outcome is out of the range of doubles: choose units in which the numbers are nearer to 1",
             ));
         }
-        // A zero has no sign for a reader.
+        // Replace negative zeros for readers.
         Ok(Answer {
             impulse: impact.impulse.map(|number| number + 0.0).into(),
             v: impact.velocity.map(|number| number + 0.0).into(),

@@ -6,20 +6,20 @@ use clap::ValueEnum;
 use hodograph::{Characteristics as OfContact, Phases, ReducedMatrix, phi_bar};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// How characteristics are written.
+/// The format of characteristics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Form {
-    /// in the object of the answer, as its field `characteristics`
+    /// in the field `characteristics` of the answer
     Json,
     /// as a table, instead of the answer
     Table,
 }
 
-/// The option that asks for them.
+/// The option that requests them.
 #[derive(Clone, Copy, Debug, clap::Args)]
-pub struct Asked {
-    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and what belongs to the end of
-    /// compression and of slip: in the answer, or as a table instead of it
+pub struct CharacteristicsArgument {
+    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and the quantities at the end of compression
+    /// and of slip: in the answer, or as a table instead of the answer
     #[arg(
         id = "characteristics",
         long,
@@ -32,7 +32,7 @@ pub struct Asked {
     pub form: Option<Form>,
 }
 
-/// A quantity. Where it does not exist it has no value.
+/// A quantity; its value is `None` if the quantity does not exist.
 #[derive(Clone, Debug)]
 struct Row {
     name: &'static str,
@@ -47,7 +47,7 @@ struct Row {
 pub struct Characteristics(Vec<Row>);
 
 impl Characteristics {
-    /// What depends on the reduced matrix alone: (41), (43), mu_s.
+    /// The quantities that depend on the reduced matrix alone: (41), (43), mu_s.
     pub fn of_contact(matrix: &ReducedMatrix<f64>) -> Self {
         let found = OfContact::of(matrix, 0.0);
         let c = |index: usize| found.sticking.map(|c| c[index]);
@@ -60,7 +60,7 @@ impl Characteristics {
             .with("mu_s", found.mu_s, "1", "3.3")
     }
 
-    /// What depends on friction, too: phi_hat with its rates, and phi_bar for slip (v_t, v_s).
+    /// Adds those that depend on friction: phi_hat with its rates, and phi_bar for slip (v_t, v_s).
     pub fn with_friction(self, matrix: &ReducedMatrix<f64>, mu: f64, [v_t, v_s]: [f64; 2]) -> Self {
         let renewal = OfContact::of(matrix, mu).renewal;
         let slips = v_t != 0.0 || v_s != 0.0;
@@ -72,7 +72,7 @@ impl Characteristics {
             .with("phi_bar", stop, "rad", "3.2")
     }
 
-    /// What a collision has at the end of compression and where slip stops.
+    /// Adds those at the end of compression and at the end of slip.
     pub fn with_phases(self, phases: &Phases<f64>) -> Self {
         let (end, stop) = (phases.last_compression_end, phases.slip_end);
         self.with("I_nC", end.map(|at| at.impulse.x), "N s", "(49)")
@@ -89,7 +89,7 @@ impl Characteristics {
         unit: &'static str,
         source: &'static str,
     ) -> Self {
-        // A zero has no sign for a reader.
+        // Replace negative zeros for readers.
         let value = value.filter(|value| value.is_finite()).map(|value| value + 0.0);
         self.0.push(Row { name, value, unit, source });
         self

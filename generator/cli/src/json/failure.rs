@@ -6,24 +6,22 @@ use hodograph::methods::MethodError;
 use hodograph::{Cause, CollisionError, ImpactError, StateError};
 use serde::{Serialize, Serializer};
 
-/// What kind of error it is: the stable names of the contract.
+/// The kinds of errors: the stable names that `docs/json.md` lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// no JSON, or JSON of another shape than asked for
+    /// the text is not JSON, or has another form than expected
     BadJson,
-    /// a field that is needed is not there
+    /// a required field is missing
     MissingField,
     /// a name that the model does not have, or that must not be given here
     UnknownName,
-    /// no forces were found that obey the laws within their bound
+    /// no forces that obey the laws were found within the bound of the work
     Unsolved,
-    /// a method other than the exact one did not come to an end
+    /// a method other than `exact` did not converge
     Unfinished,
     /// the coordinates contradict each other
     InconsistentState,
-    /// a mass or an inertia that no body has
-    ImpossibleBody,
-    /// a cause that the runtime knows, by its name
+    /// a cause of the runtime, by its name
     Of(Cause),
 }
 
@@ -36,7 +34,6 @@ impl Kind {
             Self::Unsolved => "unsolved",
             Self::Unfinished => "unfinished",
             Self::InconsistentState => "inconsistent_state",
-            Self::ImpossibleBody => "impossible_body",
             Self::Of(cause) => cause.name(),
         }
     }
@@ -51,9 +48,9 @@ impl Serialize for Kind {
 /// An error of `solve`, `eval` or `collide`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failure {
-    /// what kind
+    /// the kind of the error
     pub kind: Kind,
-    /// what is wrong and what to do
+    /// what is wrong, and what to do
     pub message: String,
 }
 
@@ -68,12 +65,12 @@ impl Failure {
         Failure { kind, message: message.into() }
     }
 
-    /// JSON of another shape than asked for.
+    /// An error of JSON of another form than expected.
     pub fn bad_json(message: impl Into<String>) -> Self {
         Self::new(Kind::BadJson, message)
     }
 
-    /// The line to write.
+    /// The error object as a line.
     pub fn to_line(&self) -> String {
         serde_json::to_string(&Object { error: self }).unwrap_or_default()
     }

@@ -3,7 +3,7 @@
 use super::{Failure, Json, Kind};
 use crate::spelling::nearest;
 
-/// An object whose names are known to be distinct.
+/// An object with distinct names.
 #[derive(Clone, Debug)]
 pub struct Fields {
     what: String,
@@ -11,11 +11,11 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Takes an object apart; `what` names it in messages.
+    /// The fields of an object; `what` is its name in messages.
     ///
     /// # Errors
     ///
-    /// `bad_json` if it is no object or a name comes twice.
+    /// `bad_json` if the value is not an object, or a name occurs twice.
     pub fn new(json: Json, what: &str) -> Result<Self, Failure> {
         let fields = match json {
             Json::Object(fields) => fields,
@@ -26,7 +26,7 @@ impl Fields {
         let mut names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(Failure::bad_json(format!("`{}` comes twice in {what}: give it once", pair[0])));
+            return Err(Failure::bad_json(format!("`{}` occurs twice in {what}: give it once", pair[0])));
         }
         Ok(Fields { what: what.to_owned(), fields })
     }
@@ -46,7 +46,7 @@ impl Fields {
         self.fields.iter().find(|(field, _)| field == name).map(|(_, value)| value)
     }
 
-    /// A field that must be there; `form` says what it should look like.
+    /// A required field; `form` describes its value.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl Fields {
         })
     }
 
-    /// A number that must be there.
+    /// A required number.
     ///
     /// # Errors
     ///
@@ -73,7 +73,7 @@ impl Fields {
         number(self.need(name, form)?, name)
     }
 
-    /// An array of numbers that must be there.
+    /// A required array of numbers.
     ///
     /// # Errors
     ///
@@ -96,7 +96,7 @@ impl Fields {
     }
 }
 
-/// The number that a value is.
+/// The number in a value.
 ///
 /// # Errors
 ///

@@ -1,11 +1,11 @@
-//! Reads lines of JSON, one after the other, up to a greatest length.
+//! Reads lines of JSON, one after the other, up to a maximum length.
 
 use std::io::{self, BufRead};
 
 use crate::stop::{Outcome, Stop};
 
-/// Reads the next line; `Some(false)` if it was too long to keep, `None` at the end. `name` is what is read, for
-/// messages.
+/// Reads the next line; `Some(false)` if it was too long to store, `None` at the end. `name` is the input's
+/// name in messages.
 pub fn read_line(
     input: &mut impl BufRead,
     line: &mut Vec<u8>,

@@ -1,5 +1,5 @@
-//! The JSON interface: reading lines and states, writing answers and error objects (`docs/json.md` is the
-//! contract).
+//! The JSON interface: reads lines and states, writes answers and error objects (`docs/json.md` is the
+//! specification).
 
 pub mod answer;
 pub mod characteristics;

@@ -9,7 +9,7 @@ use super::fields::number;
 use super::{Failure, Fields, Json, Kind};
 use crate::spelling;
 
-/// Numbers for everything that a model leaves open.
+/// The values of everything that a model leaves open.
 #[derive(Clone, Debug)]
 pub struct State {
     /// s
@@ -25,7 +25,7 @@ pub struct State {
 }
 
 impl State {
-    /// The same for the numeric evaluation of the generator.
+    /// The same state for the numeric evaluation of the generator.
     pub fn to_numeric(&self) -> hodograph_generator::numeric::State {
         hodograph_generator::numeric::State {
             parameters: self.parameters.clone(),
@@ -37,7 +37,7 @@ impl State {
     }
 }
 
-/// Number of independent speeds, which stand first in `Mechanism::speeds`.
+/// Number of independent speeds, which come first in `Mechanism::speeds`.
 pub fn independent(mechanism: &Mechanism) -> usize {
     mechanism.speeds.iter().filter(|speed| !speed.dependent).count()
 }
@@ -47,13 +47,13 @@ fn values(quantities: &[Variable]) -> Vec<f64> {
 }
 
 impl State {
-    /// The state as the traits of all mechanisms take it.
+    /// The same state for the traits of mechanisms.
     pub fn borrowed(&self) -> hodograph::State<'_> {
         let State { time, coordinates, speeds, inputs, .. } = self;
         hodograph::State { time: *time, coordinates, speeds, inputs }
     }
 
-    /// The file's values, 0 where it has none, and unit quaternions.
+    /// The values of the model file, 0 for those that it does not state, and unit quaternions.
     pub fn initial(mechanism: &Mechanism) -> Self {
         let mut state = State {
             time: 0.0,
@@ -72,8 +72,8 @@ impl State {
         state
     }
 
-    /// Sets what stands in `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional, and
-    /// gives the names of the numbers that were given.
+    /// Sets the values in `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional,
+    /// and returns the names of the given values.
     ///
     /// # Errors
     ///
@@ -91,7 +91,7 @@ impl State {
                         *state.slot(mechanism, &name, &entry)? = value;
                         if given.contains(&entry) {
                             return Err(Failure::bad_json(format!(
-                                "`{entry}` stands under `parameters` and under `inputs`: give it once"
+                                "`{entry}` is given under `parameters` and under `inputs`: give it once"
                             )));
                         }
                         given.insert(entry);
@@ -109,7 +109,7 @@ impl State {
         Ok(given)
     }
 
-    /// Sets one number by its name: a parameter or an input, or, unless `parameters` alone are meant, a
+    /// Sets one value by its name: a parameter or an input, or, unless only `parameters` are allowed, a
     /// coordinate, a speed or the time `t`.
     ///
     /// # Errors
@@ -137,10 +137,7 @@ impl State {
                     .chain(names(&mechanism.inputs))
                     .chain(["t"]);
                 let hint = spelling::hint(name, all);
-                let message = format!(
-                    "{} has no coordinate, speed, input or parameter `{name}`: {hint}",
-                    mechanism.name
-                );
+                let message = format!("there is no coordinate, speed, input or parameter `{name}`: {hint}");
                 return Err(Failure::new(Kind::UnknownName, message));
             }
         };
@@ -148,7 +145,7 @@ impl State {
         Ok(())
     }
 
-    /// Evaluates the initial values that the model states in terms of others anew, but for those that are
+    /// Evaluates the initial values that the model states in terms of others again, except those that are
     /// given.
     ///
     /// # Errors
@@ -177,7 +174,7 @@ impl State {
         Ok(())
     }
 
-    /// Where the number of that name belongs.
+    /// The value with that name.
     fn slot(&mut self, mechanism: &Mechanism, section: &str, name: &str) -> Result<&mut f64, Failure> {
         let unknown = |message: String| Err(Failure::new(Kind::UnknownName, message));
         let find = |list: &[Variable]| list.iter().position(|quantity| quantity.name == name);
@@ -223,7 +220,7 @@ impl State {
                             .chain(names(&mechanism.inputs)),
                     ),
                 };
-                unknown(format!("{} has no {} `{name}`: {hint}", mechanism.name, what(section)))
+                unknown(format!("there is no {} `{name}`: {hint}", what(section)))
             }
         }
     }

@@ -1,5 +1,5 @@
 //! JSON values with fields in the order of the text (including repeated ones) and numbers as the nearest
-//! double.
+//! doubles.
 
 use hodograph::Cause;
 use std::fmt;
@@ -21,7 +21,7 @@ pub enum Json {
     String(String),
     /// an array
     Array(Vec<Json>),
-    /// the fields of an object in their order; a name may come twice
+    /// the fields of an object in their order; a name may occur twice
     Object(Vec<(String, Json)>),
 }
 
@@ -30,19 +30,19 @@ impl Json {
     ///
     /// # Errors
     ///
-    /// `bad_json` with the place; `not_finite` where nothing but a number out of range (`1e999`) or a word
-    /// for one (`NaN`, `Infinity`) keeps the text from being JSON.
+    /// `bad_json` with the place; `not_finite` if a number out of range (`1e999`) or a word for one (`NaN`,
+    /// `Infinity`) is all that prevents the text from being JSON.
     pub fn parse(text: &str) -> Result<Json, Failure> {
         serde_json::from_str(text).map_err(|error| match without_infinities(text) {
             Some((rest, word)) if serde_json::from_str::<Json>(&rest).is_ok() => Failure::new(
                 Kind::Of(Cause::NotFinite),
                 format!("{word} is not a finite number: give a number below 1.8e308 in magnitude"),
             ),
-            _ => Failure::bad_json(format!("this is no JSON: {error}")),
+            _ => Failure::bad_json(format!("this is not JSON: {error}")),
         })
     }
 
-    /// What it is, for messages: `a string`, `null` ..
+    /// The kind of the value, for messages: `a string`, `null` ..
     pub fn sort(&self) -> &'static str {
         match self {
             Json::Null => "null",
@@ -55,7 +55,7 @@ impl Json {
     }
 }
 
-/// The text with the words for numbers that no double can hold replaced by 0, and the first such word.
+/// The text with numbers that no double can represent replaced by 0, and the first such number.
 fn without_infinities(text: &str) -> Option<(String, &str)> {
     let (mut rest, mut first) = (String::with_capacity(text.len()), None);
     let (mut at, mut in_string) = (0, false);
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn infinities_are_told_from_bad_json() {
+    fn infinities_are_distinguished_from_bad_json() {
         for text in ["1e999", "[1, -1e400]", "{\"a\": NaN}", "[-Infinity]", "[Infinity, \"NaN\"]"] {
             assert_eq!(Json::parse(text).unwrap_err().kind, Kind::Of(Cause::NotFinite), "{text}");
         }

@@ -5,34 +5,67 @@ use std::collections::HashMap;
 use gen_lsp_types as lsp;
 use hodograph_language::findings::Finding;
 use hodograph_language::outline::Item;
-use hodograph_language::{Document, Span};
+use hodograph_language::text::{Edit, Encoding, Text};
+use hodograph_language::{Document, Place, Span};
 
 use super::convert::{self, Places};
 
-/// The findings of a document as the protocol writes them.
-pub fn diagnostics(document: &Document, places: Places<'_>, uri: &lsp::Uri) -> Vec<lsp::Diagnostic> {
-    document.findings().iter().map(|finding| diagnostic(finding, places, uri)).collect()
+/// A document and where its texts are.
+pub struct Located<'a> {
+    pub document: &'a Document,
+    /// of the document, then of each file that it imports
+    pub uris: Vec<lsp::Uri>,
+    pub encoding: Encoding,
 }
 
-fn diagnostic(finding: &Finding, places: Places<'_>, uri: &lsp::Uri) -> lsp::Diagnostic {
-    let related = finding.related.iter().map(|(span, message)| lsp::DiagnosticRelatedInformation {
-        location: lsp::Location { uri: uri.clone(), range: places.range(*span) },
-        message: message.clone(),
-    });
-    let severity = match finding.is_error {
-        true => lsp::DiagnosticSeverity::Error,
-        false => lsp::DiagnosticSeverity::Warning,
-    };
-    lsp::Diagnostic {
-        range: places.range(finding.span),
-        severity: Some(severity),
-        code: Some(lsp::Code::String(finding.code.to_owned())),
-        source: Some("hodograph".to_owned()),
-        message: lsp::Message::String(finding.message.clone()),
-        tags: finding.is_unused.then(|| vec![lsp::DiagnosticTag::Unnecessary]),
-        related_information: Some(related.collect()),
-        ..lsp::Diagnostic::default()
+impl Located<'_> {
+    fn edits(&self, file: usize, edits: Vec<Edit>) -> lsp::WorkspaceEdit {
+        workspace_edit(self.uris[file].clone(), self.in_text(file, |places| places.edits(edits)))
     }
+
+    /// Where a place is.
+    pub fn location(&self, place: Place) -> lsp::Location {
+        let range = self.in_text(place.file, |places| places.range(place.span));
+        lsp::Location { uri: self.uris[place.file].clone(), range }
+    }
+
+    fn in_text<T>(&self, file: usize, ask: impl FnOnce(Places<'_>) -> T) -> T {
+        let encoding = self.encoding;
+        match self.document.imported(file) {
+            None => ask(Places { text: self.document.text(), encoding }),
+            Some(imported) => ask(Places { text: &Text::new(imported.text.clone()), encoding }),
+        }
+    }
+
+    fn diagnostic(&self, finding: &Finding, file: usize) -> lsp::Diagnostic {
+        let itself = Place { file, span: if file == 0 { finding.span } else { finding.place.span } };
+        let here = |(place, _): &&(Place, String)| *place != itself;
+        let related = finding.related.iter().filter(here).map(|(place, message)| {
+            lsp::DiagnosticRelatedInformation { location: self.location(*place), message: message.clone() }
+        });
+        let severity = match finding.is_error {
+            true => lsp::DiagnosticSeverity::Error,
+            false => lsp::DiagnosticSeverity::Warning,
+        };
+        lsp::Diagnostic {
+            range: self.location(itself).range,
+            severity: Some(severity),
+            code: Some(lsp::Code::String(finding.code.to_owned())),
+            source: Some("hodograph".to_owned()),
+            message: lsp::Message::String(finding.message.clone()),
+            tags: finding.is_unused.then(|| vec![lsp::DiagnosticTag::Unnecessary]),
+            related_information: Some(related.collect()),
+            ..lsp::Diagnostic::default()
+        }
+    }
+}
+
+/// The findings of a document as the protocol writes them: all where they stand in the document itself, or those
+/// that stand in a file that it imports.
+pub fn diagnostics(of: Located<'_>, file: usize) -> Vec<lsp::Diagnostic> {
+    let findings = of.document.findings();
+    let there = findings.iter().filter(|finding| file == 0 || finding.place.file == file);
+    there.map(|finding| of.diagnostic(finding, file)).collect()
 }
 
 fn markdown(value: String) -> lsp::MarkupContent {
@@ -148,27 +181,26 @@ pub fn hints(document: &Document, places: Places<'_>, range: lsp::Range) -> Vec<
     hints.into_iter().map(hint).collect()
 }
 
-pub fn actions(
-    document: &Document,
-    places: Places<'_>,
-    uri: &lsp::Uri,
-    range: lsp::Range,
-) -> Vec<lsp::CodeAction> {
-    let within: Span = places.span(range);
-    let findings = document.findings();
+/// Changes that are offered for what a document finds within a place of its own text, or of one that it imports.
+pub fn actions(of: Located<'_>, file: usize, within: Span) -> Vec<lsp::CodeAction> {
+    let findings = of.document.findings();
+    let offered = match file {
+        0 => of.document.fixes(within),
+        _ => of.document.fixes_with_parts(file, within),
+    };
     let action = |action: hodograph_language::fixes::Action| lsp::CodeAction {
         title: action.title,
         kind: Some(lsp::CodeActionKind::QuickFix),
-        diagnostics: findings.get(action.finding).map(|finding| vec![diagnostic(finding, places, uri)]),
+        diagnostics: findings.get(action.finding).map(|finding| vec![of.diagnostic(finding, file)]),
         is_preferred: Some(action.is_preferred),
-        edit: Some(workspace_edit(uri, places.edits(action.edits))),
+        edit: Some(of.edits(action.file, action.edits)),
         ..lsp::CodeAction::default()
     };
-    document.fixes(within).into_iter().map(action).collect()
+    offered.into_iter().map(action).collect()
 }
 
 /// Changes of one document.
-pub fn workspace_edit(uri: &lsp::Uri, edits: Vec<lsp::TextEdit>) -> lsp::WorkspaceEdit {
-    let changes = HashMap::from([(uri.clone(), edits)]);
+pub fn workspace_edit(uri: lsp::Uri, edits: Vec<lsp::TextEdit>) -> lsp::WorkspaceEdit {
+    let changes = HashMap::from([(uri, edits)]);
     lsp::WorkspaceEdit { changes: Some(changes), ..lsp::WorkspaceEdit::default() }
 }

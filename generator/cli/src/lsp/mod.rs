@@ -15,9 +15,12 @@
 
 mod answers;
 mod convert;
+mod documents;
 mod jobs;
 mod lenses;
+mod rename;
 mod session;
+mod texts;
 mod uri;
 mod wire;
 

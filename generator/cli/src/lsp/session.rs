@@ -1,14 +1,12 @@
-//! The documents of a client, and the order of the protocol.
+//! The order of the protocol: what a client says, and what it is answered.
 
-use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use gen_lsp_types as lsp;
-use hodograph_generator::files::Beside;
-use hodograph_generator::source::Source;
-use hodograph_language::Document;
+use hodograph_generator::files;
 use hodograph_language::text::{Edit, Encoding, Text};
+use hodograph_language::{Document, Place};
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -16,8 +14,10 @@ use serde_json::{Value, json};
 
 use super::answers;
 use super::convert::{MODIFIERS, Places, TYPES};
+use super::documents::{Documents, Settled};
 use super::jobs::{self, Finished, Jobs, Tell};
 use super::lenses::Derivations;
+use super::rename;
 use super::uri;
 use super::wire::Incoming;
 
@@ -31,33 +31,6 @@ enum Phase {
     Ended(bool),
 }
 
-/// A document that the client has opened.
-struct Open {
-    text: Text,
-    version: i32,
-    /// its file, beside which imported files are
-    path: Option<PathBuf>,
-    /// what is known of this text; nothing until it is asked for
-    document: Option<Document>,
-    published: bool,
-}
-
-impl Open {
-    fn new(text: String, version: i32, path: Option<PathBuf>) -> Open {
-        Open { text: Text::new(text), version, path, document: None, published: false }
-    }
-
-    fn document(&mut self) -> &Document {
-        self.document.get_or_insert_with(|| {
-            let Some(path) = &self.path else { return Document::new(self.text.as_str()) };
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let files = Beside { path: path.clone(), name: name.clone() };
-            let source = Source::file(name, self.text.as_str()).importing(&files);
-            Document::read(self.text.as_str(), source)
-        })
-    }
-}
-
 /// Why a request is not answered.
 struct Refused(ErrorCode, String);
 
@@ -66,15 +39,17 @@ type Answer = Result<Value, Refused>;
 /// A connection.
 pub struct Session {
     phase: Phase,
-    encoding: Encoding,
-    documents: HashMap<String, Open>,
+    documents: Documents,
     /// dimensions are shown beside names
     hints: bool,
     shows_documents: bool,
     refreshes_lenses: bool,
+    watches_files: bool,
     /// it was said that Rust files are not read
     declined: bool,
     derivations: Derivations,
+    /// the folders that the client works in
+    folders: Vec<PathBuf>,
     jobs: Jobs,
     requests: i32,
     outgoing: Vec<Value>,
@@ -85,13 +60,14 @@ impl Session {
     pub fn new(tell: Tell) -> Session {
         Session {
             phase: Phase::New,
-            encoding: Encoding::Utf16,
-            documents: HashMap::new(),
+            documents: Documents::default(),
             hints: false,
             shows_documents: false,
             refreshes_lenses: false,
+            watches_files: false,
             declined: false,
             derivations: Derivations::default(),
+            folders: Vec::new(),
             jobs: Jobs::new(tell),
             requests: 0,
             outgoing: Vec::new(),
@@ -129,19 +105,10 @@ impl Session {
 
     /// Reads the texts that have changed and sends what is wrong with them.
     pub fn settle(&mut self) {
-        let encoding = self.encoding;
-        for (name, open) in self.documents.iter_mut().filter(|(_, open)| !open.published) {
-            open.published = true;
-            let uri = lsp::Uri(name.clone());
-            let found = catch_unwind(AssertUnwindSafe(|| {
-                open.document();
-                let places = Places { text: &open.text, encoding };
-                open.document.as_ref().map(|document| answers::diagnostics(document, places, &uri))
-            }));
-            let diagnostics = found.ok().flatten().unwrap_or_default();
-            let params = lsp::PublishDiagnosticsParams { uri, version: Some(open.version), diagnostics };
-            let method = "textDocument/publishDiagnostics";
-            self.outgoing.push(json!({ "jsonrpc": "2.0", "method": method, "params": params }));
+        for Settled { name, version, diagnostics } in self.documents.settle() {
+            let uri = lsp::Uri(name);
+            let params = lsp::PublishDiagnosticsParams { uri, version: Some(version), diagnostics };
+            self.tell("textDocument/publishDiagnostics", &json!(params));
         }
     }
 
@@ -204,6 +171,11 @@ impl Session {
             "textDocument/didOpen" => self.opened(params),
             "textDocument/didChange" => self.changed(params),
             "textDocument/didClose" => self.closed(params),
+            "workspace/didChangeWatchedFiles" => self.watched(params),
+            "initialized" => {
+                self.watch();
+                Ok(())
+            }
             "workspace/didChangeConfiguration" => {
                 let hints = &params["settings"]["hodograph"]["inlayHints"];
                 self.hints = hints.as_bool().unwrap_or(self.hints);
@@ -214,6 +186,17 @@ impl Session {
         if let Err(Refused(_, why)) = read {
             let message = format!("{method}: {why}");
             self.tell("window/logMessage", &json!({ "type": 2, "message": message }));
+        }
+    }
+
+    /// Asks to be told of files that change.
+    fn watch(&mut self) {
+        if self.watches_files {
+            let watchers = json!([{ "globPattern": "**/*.mech" }]);
+            let method = "workspace/didChangeWatchedFiles";
+            let watched =
+                json!({ "id": "models", "method": method, "registerOptions": { "watchers": watchers } });
+            self.ask("client/registerCapability", &json!({ "registrations": [watched] }));
         }
     }
 
@@ -228,38 +211,45 @@ impl Session {
             }
             return Ok(());
         }
-        let path = uri::path(&uri.0);
-        self.documents.insert(uri.0, Open::new(text, version, path));
+        self.documents.open(uri.0, text, version);
         Ok(())
     }
 
     fn changed(&mut self, params: Value) -> Result<(), Refused> {
         let lsp::DidChangeTextDocumentParams { text_document, content_changes } = arguments(params)?;
-        let encoding = self.encoding;
+        let encoding = self.documents.encoding;
         let uri = text_document.text_document_identifier.uri.0;
         let unknown = || Refused(ErrorCode::InvalidParams, format!("{uri} is not open"));
-        let open = self.documents.get_mut(&uri).ok_or_else(unknown)?;
+        let mut text = self.documents.get(&uri).ok_or_else(unknown)?.text.clone();
         for change in content_changes {
-            open.text = Text::new(match change {
+            text = Text::new(match change {
                 lsp::TextDocumentContentChangeEvent::TextDocumentContentChangePartial(change) => {
-                    let span = Places { text: &open.text, encoding }.span(change.range);
-                    open.text.edited(&Edit { span, text: change.text })
+                    let span = Places { text: &text, encoding }.span(change.range);
+                    text.edited(&Edit { span, text: change.text })
                 }
                 lsp::TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(change) => {
                     change.text
                 }
             });
         }
-        open.version = text_document.version;
-        (open.document, open.published) = (None, false);
+        self.documents.change(&uri, text, text_document.version);
         Ok(())
     }
 
     fn closed(&mut self, params: Value) -> Result<(), Refused> {
         let uri = arguments::<lsp::DidCloseTextDocumentParams>(params)?.text_document.uri;
-        if self.documents.remove(&uri.0).is_some() {
+        if self.documents.close(&uri.0) {
             let none = json!({ "uri": uri, "diagnostics": [] });
             self.tell("textDocument/publishDiagnostics", &none);
+        }
+        Ok(())
+    }
+
+    /// Files have changed that may not be open.
+    fn watched(&mut self, params: Value) -> Result<(), Refused> {
+        let changes = arguments::<lsp::DidChangeWatchedFilesParams>(params)?.changes;
+        for path in changes.into_iter().filter_map(|change| uri::path(&change.uri.0)) {
+            self.documents.file_has_changed(&files::key(&path));
         }
         Ok(())
     }
@@ -313,14 +303,7 @@ impl Session {
                 |p: lsp::SignatureHelpParams| p.text_document_position_params,
                 answers::signature,
             ),
-            "textDocument/definition" => {
-                let uri = params["textDocument"]["uri"].clone();
-                let place = |p: lsp::DefinitionParams| p.text_document_position_params;
-                self.at(params, place, |document, places, at| {
-                    let found = document.definition(places.offset(at));
-                    found.map(|span| json!({ "uri": uri, "range": places.range(span) }))
-                })
-            }
+            "textDocument/definition" => self.definition(params),
             "textDocument/references" => {
                 let uri = params["textDocument"]["uri"].clone();
                 let with = params["context"]["includeDeclaration"].as_bool().unwrap_or(true);
@@ -355,17 +338,16 @@ impl Session {
                     },
                 )
             }
-            "textDocument/codeAction" => {
-                let lsp::CodeActionParams { text_document, range, .. } = arguments(params.clone())?;
-                let uri = text_document.uri;
-                self.whole(params, |document, places| answers::actions(document, places, &uri, range))
-            }
+            "textDocument/codeAction" => self.actions(params),
             "textDocument/codeLens" => self.lenses(params),
             _ => Err(Refused(ErrorCode::MethodNotFound, format!("there is no method `{method}`"))),
         }
     }
 
     fn initialize(&mut self, params: Value) -> Answer {
+        let folders = params["workspaceFolders"].as_array().into_iter().flatten();
+        let uris = folders.map(|folder| &folder["uri"]).chain([&params["rootUri"]]);
+        self.folders = uris.filter_map(|uri| uri::path(uri.as_str()?)).collect();
         let lsp::InitializeParams { capabilities, initialization_options, .. } = arguments(params)?;
         let encodings =
             capabilities.general.and_then(|general| general.position_encodings).unwrap_or_default();
@@ -375,16 +357,19 @@ impl Session {
             lsp::PositionEncodingKind::UTF32 => Some(Encoding::Utf32),
             lsp::PositionEncodingKind::Custom(_) => None,
         });
-        self.encoding = chosen.unwrap_or_default();
+        self.documents.encoding = chosen.unwrap_or_default();
         let window = capabilities.window.and_then(|window| window.show_document);
         self.shows_documents = window.is_some_and(|show| show.support);
-        let lenses = capabilities.workspace.and_then(|workspace| workspace.code_lens);
+        let workspace = capabilities.workspace.unwrap_or_default();
+        let watched = workspace.did_change_watched_files;
+        self.watches_files = watched.and_then(|watched| watched.dynamic_registration).unwrap_or(false);
+        let lenses = workspace.code_lens;
         self.refreshes_lenses = lenses.and_then(|lenses| lenses.refresh_support).unwrap_or(false);
         let options = initialization_options.unwrap_or_default();
         self.hints = options["inlayHints"].as_bool().unwrap_or(false);
         self.phase = Phase::Running;
         to_value(lsp::InitializeResult {
-            capabilities: capabilities_of(self.encoding),
+            capabilities: capabilities_of(self.documents.encoding),
             server_info: Some(lsp::ServerInfo {
                 name: "hodograph".to_owned(),
                 version: Some(env!("CARGO_PKG_VERSION").to_owned()),
@@ -394,10 +379,9 @@ impl Session {
 
     /// The document of a request.
     fn open(&mut self, uri: &lsp::Uri) -> Result<(&Document, Places<'_>), Refused> {
-        let encoding = self.encoding;
+        let encoding = self.documents.encoding;
         let unknown = || Refused(ErrorCode::InvalidParams, format!("{} is not open", uri.0));
-        let open = self.documents.get_mut(&uri.0).ok_or_else(unknown)?;
-        let document = open.document();
+        let document = self.documents.document(&uri.0).ok_or_else(unknown)?;
         Ok((document, Places { text: document.text(), encoding }))
     }
 
@@ -420,6 +404,33 @@ impl Session {
         to_value(answer(document, places))
     }
 
+    fn definition(&mut self, params: Value) -> Answer {
+        let place = arguments::<lsp::DefinitionParams>(params)?.text_document_position_params;
+        let uri = place.text_document.uri;
+        let (document, places) = self.open(&uri)?;
+        let found: Option<Place> = document.definition(places.offset(place.position));
+        let document = self.documents.get(&uri.0).and_then(|open| open.document.as_ref());
+        let location = |(found, document)| self.documents.located(document, &uri.0).location(found);
+        to_value(found.zip(document).map(location))
+    }
+
+    /// Changes that the document offers, and those that models offer that import it.
+    fn actions(&mut self, params: Value) -> Answer {
+        let lsp::CodeActionParams { text_document, range, .. } = arguments(params)?;
+        let name = text_document.uri.0.as_str();
+        let (_, places) = self.open(&text_document.uri)?;
+        let within = places.span(range);
+        let key = self.documents.get(name).map_or("", |open| open.key());
+        let mut actions = Vec::new();
+        for (other, open) in self.documents.iter() {
+            let file = if other == name { Some(0) } else { open.imports(key) };
+            if let Some((document, file)) = open.document.as_ref().zip(file) {
+                actions.extend(answers::actions(self.documents.located(document, other), file, within));
+            }
+        }
+        to_value(actions)
+    }
+
     fn prepare_rename(&mut self, params: Value) -> Answer {
         let place = arguments::<lsp::PrepareRenameParams>(params)?.text_document_position_params;
         let (document, places) = self.open(&place.text_document.uri)?;
@@ -431,10 +442,11 @@ impl Session {
     fn rename(&mut self, params: Value) -> Answer {
         let lsp::RenameParams { new_name, text_document_position_params: place, .. } = arguments(params)?;
         let uri = place.text_document.uri;
-        let (document, places) = self.open(&uri)?;
+        let (_, places) = self.open(&uri)?;
+        let at = places.offset(place.position);
         let failed = |why| Refused(ErrorCode::RequestFailed, why);
-        let edits = document.rename(places.offset(place.position), &new_name).map_err(failed)?;
-        to_value(answers::workspace_edit(&uri, places.edits(edits)))
+        let edit = rename::rename(&mut self.documents, &uri.0, at, &new_name, &self.folders);
+        to_value(edit.map_err(failed)?)
     }
 
     fn lenses(&mut self, params: Value) -> Answer {

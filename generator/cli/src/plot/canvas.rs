@@ -1,5 +1,5 @@
 //! A backend of the library `plotters` that records shapes, in hundredths of a pixel; `svg` and `png` write
-//! them.
+//! them to files.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -36,7 +36,7 @@ impl From<BackendColor> for Colour {
     }
 }
 
-/// Where text stands on its place.
+/// The place of a text relative to its anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -44,17 +44,16 @@ pub enum Anchor {
     End,
 }
 
-/// What is drawn; lengths in pixels, y downwards.
+/// A shape; lengths in pixels, y downwards.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// a polygonal line, of dashes and gaps of these lengths if there are any
+    /// a polyline, dashed if lengths of dashes and gaps are given
     Line { points: Vec<[f64; 2]>, colour: Colour, width: f64, dashes: Vec<f64> },
     /// a filled polygon
     Polygon { points: Vec<[f64; 2]>, colour: Colour },
-    /// a circle, filled or as a line of this width
+    /// a circle, filled, or a line of this width
     Circle { centre: [f64; 2], radius: f64, colour: Colour, width: Option<f64> },
-    /// marked text; `at` is on its line, and it is turned about that place by a quarter to the left if
-    /// `upwards`
+    /// marked text with its anchor on the base line; rotated by a quarter to the left if `upwards`
     Text { marked: String, at: [f64; 2], size: f64, colour: Colour, anchor: Anchor, upwards: bool },
 }
 
@@ -63,7 +62,7 @@ pub enum Shape {
 pub struct Sheet {
     /// width and height, pixels
     pub size: [f64; 2],
-    /// in the order of drawing
+    /// the shapes in the order of drawing
     pub shapes: Vec<Shape>,
 }
 
@@ -82,7 +81,7 @@ impl Canvas {
         self.0.borrow_mut().shapes.push(shape);
     }
 
-    /// What was drawn.
+    /// The recorded shapes.
     pub fn sheet(&self) -> Sheet {
         self.0.borrow().clone()
     }
@@ -107,7 +106,7 @@ impl DrawingBackend for Canvas {
     }
 
     fn draw_pixel(&mut self, _: BackendCoord, _: BackendColor) -> Drawn {
-        // A hundredth of a pixel is not seen; all shapes have their own function below.
+        // Single points are too small to be seen; all shapes have functions of their own below.
         Ok(())
     }
 
@@ -174,7 +173,7 @@ impl DrawingBackend for Canvas {
             HPos::Center => Anchor::Middle,
             HPos::Right => Anchor::End,
         };
-        // From the place named to the line on which letters stand.
+        // The distance from the given anchor to the base line.
         let down = size
             * match style.anchor().v_pos {
                 VPos::Top => 0.9,

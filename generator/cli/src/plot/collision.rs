@@ -9,11 +9,11 @@ use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};
 use super::label::Label;
 use super::trace::{Sample, Trace};
 
-/// The marks of where the laws end a collision, in the order of [`Law::ALL`].
+/// The marks of the ends of a collision by each law, in the order of [`Law::ALL`].
 const SIGNS: [Sign; 3] = [Sign::Circle, Sign::Cross, Sign::Square];
 const _: () = assert!(SIGNS.len() == Law::ALL.len(), "every law needs a sign");
 
-/// What a panel shows of a sample.
+/// The coordinates of a sample in a panel.
 type Pick = fn(&Sample) -> [f64; 2];
 
 /// The figure of collisions that differ in friction.
@@ -53,9 +53,9 @@ pub fn figure(title: &str, traces: &[Trace]) -> Figure {
 fn directions(panel: &mut Panel, traces: &[Trace]) {
     for (index, trace) in traces.iter().enumerate() {
         let (Some(phi), Some(first)) = (trace.phi_bar, trace.samples.first()) else { continue };
-        // It shows the direction of the curve near the origin.
+        // The ray indicates the direction of the curve near the origin.
         let length = 0.3 * first.slip();
-        // 0 turns -0 into 0.
+        // adding 0 turns -0 into 0
         let label = Label::symbol("\u{3c6}\u{304}", "")
             .then(&format!(" = {:.3} rad", phi + 0.0).replace('-', "\u{2212}"));
         let ray = vec![[0.0, 0.0], [length * phi.cos(), length * phi.sin()]];

@@ -1,6 +1,6 @@
 //! The figure of Appendix B of the paper, its Fig. 4: the ellipse g = 0, the hyperbola h = 0 and circles of
-//! radius mu in the plane of mu cos phi and mu sin phi, and the directions of slip that can be read from
-//! where they meet.
+//! radius mu in the plane of mu cos phi and mu sin phi, and the directions of slip given by their
+//! intersections.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -9,38 +9,38 @@ use hodograph::{Characteristics, ReducedMatrix, invariant_directions, phi_bar, r
 use super::figure::{Axis, Figure, Mark, Panel, Series, Sign};
 use super::label::Label;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 720;
-/// How far the figure reaches beyond circles and ellipse, and how far it follows the ellipse of a contact
-/// that is hardly moved in some direction: parts of the largest radius.
+/// The extent of the figure relative to circles and ellipse, and the largest radius to which the ellipse is
+/// drawn (it is large if the contact hardly moves in some direction), relative to the largest circle.
 const MARGIN: f64 = 1.15;
 const ELLIPSE: f64 = 4.0;
 /// A rate counts as zero below this part of its terms.
-const NONE: f64 = 1e-12;
+const NEGLIGIBLE: f64 = 1e-12;
 
 /// The curves of a contact.
 struct Conics<'a> {
     m: &'a ReducedMatrix<f64>,
-    /// the figure ends at this distance from the origin, to the right and upwards
+    /// extent of the figure to the right and upwards
     reach: f64,
 }
 
 impl Conics<'_> {
     /// b.d, the terms of g and of h without friction: g = b.d - mu d.T d.
-    fn pull(&self, phi: f64) -> [f64; 2] {
+    fn terms_without_friction(&self, phi: f64) -> [f64; 2] {
         let (sin, cos) = phi.sin_cos();
         [self.m.nt * cos + self.m.ns * sin, self.m.ns * cos - self.m.nt * sin]
     }
 
-    /// What mu multiplies in -g and in -h.
-    fn drag(&self, phi: f64) -> [f64; 2] {
+    /// The factors of mu in -g and in -h.
+    fn terms_of_friction(&self, phi: f64) -> [f64; 2] {
         let (sin, cos) = phi.sin_cos();
         let m = self.m;
         let along = m.tt * cos * cos + m.ss * sin * sin + 2.0 * m.ts * sin * cos;
         [along, m.ts * (cos * cos - sin * sin) - (m.tt - m.ss) * sin * cos]
     }
 
-    /// A point at this distance from the origin, which may be negative; none outside of the figure.
+    /// A point at this distance from the origin, which may be negative; NaN outside the figure.
     fn place(&self, mu: f64, phi: f64) -> [f64; 2] {
         let (sin, cos) = phi.sin_cos();
         let place = [mu * cos, mu * sin];
@@ -48,7 +48,7 @@ impl Conics<'_> {
         if inside { place } else { [f64::NAN; 2] }
     }
 
-    /// Points in all directions of a half turn that begins at this angle.
+    /// Points in all directions of a half turn from this angle on.
     fn sweep(&self, from: f64, mu: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
         let angle = |index: usize| from + PI * index as f64 / POINTS as f64;
         (0..=POINTS).map(|index| self.place(mu(angle(index)), angle(index))).collect()
@@ -57,21 +57,25 @@ impl Conics<'_> {
     /// g = 0 (69): mu = b.d / d.T d where b.d > 0.
     fn ellipse(&self) -> Vec<[f64; 2]> {
         let ahead = self.m.ns.atan2(self.m.nt);
-        self.sweep(ahead - FRAC_PI_2, |phi| self.pull(phi)[0] / self.drag(phi)[0])
+        self.sweep(ahead - FRAC_PI_2, |phi| {
+            self.terms_without_friction(phi)[0] / self.terms_of_friction(phi)[0]
+        })
     }
 
-    /// h = 0 (70): its near branch, which passes through the origin, and the remote one. Where the contact is
-    /// symmetric to the direction of b, the near one is two lines or one.
+    /// h = 0 (70): its near branch, which passes through the origin, and the remote one. If the contact is
+    /// symmetric to the direction of b, the near branch degenerates to one or two lines.
     fn hyperbola(&self) -> [Vec<[f64; 2]>; 2] {
         let ahead = self.m.ns.atan2(self.m.nt);
         let size = self.m.tt + self.m.ss;
-        let reference = self.drag(ahead)[1];
-        if reference.abs() <= NONE * size || self.m.nt.hypot(self.m.ns) <= NONE * size.max(self.m.nn) {
-            // A line along b, or along both principal axes of T; and across b another line, if T is not a
-            // circle.
+        let reference = self.terms_of_friction(ahead)[1];
+        if reference.abs() <= NEGLIGIBLE * size
+            || self.m.nt.hypot(self.m.ns) <= NEGLIGIBLE * size.max(self.m.nn)
+        {
+            // A line along b, or along both principal axes of T; and another line perpendicular to b, unless
+            // T is isotropic.
             let axis = 0.5 * (2.0 * self.m.ts).atan2(self.m.tt - self.m.ss);
             let straight = |phi: f64| [-1.0, 1.0].map(|end| self.ray(end, phi));
-            let balanced = self.m.nt.hypot(self.m.ns) <= NONE * size.max(self.m.nn);
+            let balanced = self.m.nt.hypot(self.m.ns) <= NEGLIGIBLE * size.max(self.m.nn);
             let first = straight(if balanced { axis } else { ahead }).to_vec();
             let second = if balanced {
                 straight(axis + FRAC_PI_2).to_vec()
@@ -79,24 +83,24 @@ impl Conics<'_> {
                 // sin(phi - ahead) cancels from both sides of (70).
                 let half = 0.5 * (self.m.tt - self.m.ss);
                 let twist = self.m.ts * (2.0 * ahead).sin() + half * (2.0 * ahead).cos();
-                let pull = self.m.nt.hypot(self.m.ns);
-                match twist.abs() <= NONE * size {
+                let b = self.m.nt.hypot(self.m.ns);
+                match twist.abs() <= NEGLIGIBLE * size {
                     true => Vec::new(),
-                    false => self.sweep(ahead - FRAC_PI_2, |phi| pull / (2.0 * twist * (phi - ahead).cos())),
+                    false => self.sweep(ahead - FRAC_PI_2, |phi| b / (2.0 * twist * (phi - ahead).cos())),
                 }
             };
             return [first, second];
         }
         let branch = |near: bool| {
             self.sweep(ahead, |phi| {
-                let [pull, drag] = [self.pull(phi)[1], self.drag(phi)[1]];
-                if (drag * reference > 0.0) == near { pull / drag } else { f64::NAN }
+                let [free, friction] = [self.terms_without_friction(phi)[1], self.terms_of_friction(phi)[1]];
+                if (friction * reference > 0.0) == near { free / friction } else { f64::NAN }
             })
         };
         [branch(true), branch(false)]
     }
 
-    /// The end of a line from the origin to the edge of the figure.
+    /// The end of a line from the origin to the border of the figure.
     fn ray(&self, end: f64, phi: f64) -> [f64; 2] {
         let (sin, cos) = phi.sin_cos();
         let length = self.reach / sin.abs().max(cos.abs());
@@ -104,8 +108,8 @@ impl Conics<'_> {
     }
 }
 
-/// The figure of a contact with circles for these coefficients of friction; `phi` is the direction of slip
-/// at the start, from which slip turns to phi_bar.
+/// The figure of a contact with circles for these coefficients of friction; `phi` is the initial direction of
+/// slip, from which slip turns to phi_bar.
 pub fn figure(title: &str, m: &ReducedMatrix<f64>, mu: &[f64], phi: f64) -> Figure {
     let found = Characteristics::of(m, 0.0);
     let radius = mu.iter().copied().fold(found.mu_c, f64::max);
@@ -152,7 +156,7 @@ pub fn figure(title: &str, m: &ReducedMatrix<f64>, mu: &[f64], phi: f64) -> Figu
     }
     let label = Label::words("D: ").with("\u{3bc}", "c").then(", ").with("\u{3c6}", "c");
     panel.marks.push(Mark { label, sign: Sign::Dot, style: None, at: conics.place(found.mu_c, found.phi_c) });
-    // The legend follows the letters.
+    // in the alphabetical order of the letters
     panel.marks.sort_by_key(|mark| mark.label.plain());
     Figure { panel_size: [560.0, 560.0], ..Figure::new(title) }.panel(panel)
 }
@@ -168,7 +172,7 @@ mod tests {
         let mut count = 0;
         for [u, v] in points.iter().filter(|point| point.iter().all(|number| number.is_finite())) {
             let (mu, phi) = (u.hypot(*v), v.atan2(*u));
-            // (69), (70): at the origin there is no direction.
+            // (69), (70): a point at the origin has no direction
             let found = mu * rates(m, mu, phi)[which];
             assert!(found.abs() <= 1e-12 * (1.0 + mu) * (1.0 + mu), "{u} {v}: {found}");
             count += 1;
@@ -176,7 +180,8 @@ mod tests {
         count
     }
 
-    /// Every point of the curves is on its conic, also of contacts whose hyperbola is two lines.
+    /// Every point of the curves lies on its conic, also for contacts whose hyperbola degenerates to two
+    /// lines.
     #[test]
     fn curves_are_where_g_and_h_vanish() {
         for (m, pieces) in [

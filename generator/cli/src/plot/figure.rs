@@ -19,14 +19,14 @@ pub struct Figure {
     pub columns: usize,
     /// width and height of a panel, pixels
     pub panel_size: [f64; 2],
-    /// where the legend stands
+    /// the place of the legend
     pub legend: Legend,
 }
 
-/// Where the legend stands.
+/// The place of the legend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Legend {
-    /// one for all panels, below them; what has the same label in several panels stands there once
+    /// one below all panels; a label that occurs in several panels is listed once
     Below,
     /// one for each panel, on its right
     Beside,
@@ -41,52 +41,52 @@ pub struct Panel {
     pub x: Axis,
     /// upwards
     pub y: Axis,
-    /// a unit is as long upwards as to the right
+    /// whether both axes have the same scale
     pub equal: bool,
-    /// in the order of drawing
+    /// the curves in the order of drawing
     pub series: Vec<Series>,
     /// drawn over the series
     pub marks: Vec<Mark>,
 }
 
-/// What an axis shows.
+/// The quantity of an axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// the quantity
     pub name: Label,
     /// its unit; may be empty
     pub unit: String,
-    /// the ends; `None`: those of the data, and a margin
+    /// its range; `None`: that of the data with a margin
     pub range: Option<[f64; 2]>,
 }
 
 /// A curve.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// in the legend; empty: not there
+    /// the label in the legend; empty: not listed
     pub label: Label,
-    /// number of its [`style`](super::series::style)
+    /// index of its [`style`](super::series::style)
     pub style: usize,
-    /// in units of the axes; a number that is not finite interrupts the curve
+    /// in units of the axes; a value that is not finite interrupts the curve
     pub points: Vec<[f64; 2]>,
-    /// arrowheads show in which direction the curve is run through
+    /// whether arrowheads show the direction of the curve
     pub directed: bool,
 }
 
-/// A place that is marked.
+/// A marked point.
 #[derive(Clone, Debug)]
 pub struct Mark {
-    /// in the legend; empty: not there
+    /// the label in the legend; empty: not listed
     pub label: Label,
-    /// its form
+    /// its shape
     pub sign: Sign,
-    /// colour of this style; `None`: black
+    /// index of the style of its colour; `None`: black
     pub style: Option<usize>,
     /// in units of the axes
     pub at: [f64; 2],
 }
 
-/// The form of a mark.
+/// The shape of a mark.
 #[allow(dead_code)] // for figures over time
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
@@ -105,7 +105,7 @@ pub enum Sign {
 }
 
 impl Figure {
-    /// A figure of one column, legends beside its panels: quantities over time.
+    /// A figure with one column and legends beside its panels: quantities over time.
     pub fn new(title: &str) -> Self {
         Figure {
             title: title.to_owned(),
@@ -116,13 +116,13 @@ impl Figure {
         }
     }
 
-    /// With a panel more.
+    /// Adds a panel.
     pub fn panel(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
         self
     }
 
-    /// What the panels show, in words.
+    /// The contents of the panels in words.
     pub fn description(&self) -> String {
         let panel = |panel: &Panel| format!("{} over {}", panel.y.name.plain(), panel.x.name.plain());
         self.panels.iter().map(panel).collect::<Vec<_>>().join("; ")
@@ -137,7 +137,7 @@ impl Panel {
 }
 
 impl Axis {
-    /// An axis as long as its data.
+    /// An axis with the range of its data.
     pub fn new(name: impl Into<Label>, unit: &str) -> Self {
         Axis { name: name.into(), unit: unit.to_owned(), range: None }
     }

@@ -11,7 +11,7 @@ use crate::output;
 use crate::stop::{Outcome, Stop};
 
 impl Figure {
-    /// The bytes of a file in a format.
+    /// The bytes of the figure's file.
     ///
     /// # Errors
     ///
@@ -25,13 +25,13 @@ impl Figure {
     ///
     /// # Errors
     ///
-    /// As [`bytes`](Self::bytes), or the file cannot be written.
+    /// Those of [`bytes`](Self::bytes), or the file cannot be written.
     pub fn save(&self, path: &Path, format: Format) -> Outcome {
         output::file(path, &self.bytes(format)?)
     }
 }
 
-/// The bytes of a sheet in a format, with a title and a description where it has room for them.
+/// The bytes of a sheet's file, with a title and a description if the format supports them.
 ///
 /// # Errors
 ///
@@ -46,18 +46,18 @@ pub fn picture(sheet: &Sheet, format: Format, title: &str, description: &str) ->
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// lines and letters, which can be magnified
+    /// a vector graphic
     Svg,
-    /// a picture of points
+    /// a raster image
     Png,
 }
 
 impl Format {
-    /// The format that is asked for, else the one a file's name ends with, else SVG.
+    /// The given format, else that of the file's ending, else SVG.
     ///
     /// # Errors
     ///
-    /// The name ends otherwise, and no format is asked for.
+    /// The file's name has another ending, and no format is given.
     pub fn of(asked: Option<Format>, path: Option<&Path>) -> Outcome<Format> {
         let ending = |path: &Path| path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         match (asked, path.map(ending)) {

@@ -6,13 +6,13 @@ use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 use super::label::{Kind, Label};
 
-/// What a viewer of an SVG is asked for: the font itself, then fonts of its widths.
+/// The font families in an SVG: the font itself, then fonts of the same widths.
 pub const FAMILY: &str = "DejaVu Sans, Verdana, Bitstream Vera Sans, Geneva, sans-serif";
-/// The size of indices and exponents beside that of the text.
+/// The size of indices and exponents relative to that of the text.
 pub const SMALL: f64 = 0.72;
-/// How far an index stands below the line, in sizes of the text.
+/// The drop of an index below the base line, in units of the font size.
 pub const LOWER: f64 = 0.22;
-/// How far an exponent stands above it.
+/// The rise of an exponent above the base line, in the same units.
 pub const RAISE: f64 = 0.36;
 /// Height of a capital letter, in sizes of the text.
 pub const CAPITAL: f64 = 0.729;
@@ -27,7 +27,7 @@ fn face(kind: Kind) -> Option<&'static Face<'static>> {
     Some(if kind == Kind::Symbol { italic } else { upright })
 }
 
-/// A letter of a label: its glyph, where it begins on the line, how far it is raised, and its size.
+/// A glyph of a label: its place on the base line, its rise, and its size.
 pub struct Letter {
     kind: Kind,
     glyph: GlyphId,
@@ -40,7 +40,7 @@ pub struct Letter {
 }
 
 impl Letter {
-    /// Draws the outline in units of the font, y upwards, and says how many of them are the size of the font.
+    /// Draws the outline in units of the font, y upwards, and returns the number of units per font size.
     pub fn outline(&self, builder: &mut dyn OutlineBuilder) -> f64 {
         let Some(face) = face(self.kind) else { return 1.0 };
         face.outline_glyph(self.glyph, builder);
@@ -48,7 +48,7 @@ impl Letter {
     }
 }
 
-/// The letters of marked text in a size, and its width.
+/// The glyphs of marked text of a given font size, and its width.
 pub fn placed(marked: &str, size: f64) -> (Vec<Letter>, f64) {
     let mut x = 0.0;
     let mut letters = Vec::new();

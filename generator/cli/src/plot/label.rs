@@ -1,18 +1,18 @@
 //! Text of figures: words, symbols and their indices.
 //!
-//! A label is one string, so that it can go through `plotters`; characters of Unicode's private use area,
-//! which words never have, say where a symbol or an index begins.
+//! A label is a single string, so that it can pass through `plotters`; characters of Unicode's private use
+//! area, which do not occur in words, mark the beginnings of symbols and indices.
 
-/// How a piece of a label is set.
+/// The typeface of a piece of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// upright
     Word,
     /// italic
     Symbol,
-    /// small and low
+    /// small and lowered
     Index,
-    /// small and high
+    /// small and raised
     Exponent,
 }
 
@@ -39,7 +39,7 @@ impl Label {
     }
 
     #[allow(dead_code)] // for figures over time
-    /// The name of a quantity of a model: the digits at its end are its index.
+    /// The name of a quantity of a model; its trailing digits are the index.
     pub fn name(name: &str) -> Self {
         let head = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
         match head {
@@ -48,23 +48,23 @@ impl Label {
         }
     }
 
-    /// With words at its end.
+    /// Appends words.
     pub fn then(self, text: &str) -> Self {
         self.push(Kind::Word, text)
     }
 
-    /// With a symbol and its index at its end.
+    /// Appends a symbol with its index.
     pub fn with(self, symbol: &str, index: &str) -> Self {
         self.push(Kind::Symbol, symbol).push(Kind::Index, index)
     }
 
-    /// With a power of ten at its end.
+    /// Appends a power of ten.
     pub fn with_power_of_ten(self, exponent: i32) -> Self {
         let exponent = exponent.to_string().replace('-', "\u{2212}");
         self.push(Kind::Word, "10").push(Kind::Exponent, &exponent)
     }
 
-    /// The text with its marks, as the canvas reads it.
+    /// The text with its marks, which the canvas interprets.
     pub fn marked(&self) -> &str {
         &self.0
     }

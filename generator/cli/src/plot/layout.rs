@@ -12,35 +12,36 @@ use super::label::Label;
 use super::series::{BLACK, curve, mark, style};
 use super::{font, legend};
 
-/// Sizes of letters: titles, names of axes, numbers; pixels.
+/// Font sizes of titles, names of axes and numbers, pixels.
 const TITLE: f64 = 16.0;
 const NAME: f64 = 13.0;
 const NUMBER: f64 = 11.0;
-/// Around the figure, and between its parts.
+/// Space around the figure and between its parts.
 const MARGIN: f64 = 14.0;
-/// The place a title takes.
+/// Height of the title.
 const TITLE_LINE: f64 = 34.0;
-/// The place of the title of a panel.
+/// Height of the title of a panel.
 const CAPTION_LINE: f64 = 24.0;
-/// The place of the name of an axis, and of a tick.
+/// Height of the name of an axis, and length of a tick.
 const NAME_LINE: f64 = 20.0;
 const TICK: f64 = 5.0;
-/// Between two numbers of an axis at least: to the right, upwards; and where both axes have the same step.
-const NUMBERS_APART: [f64; 2] = [75.0, 28.0];
-const EQUALLY_APART: [f64; 2] = [55.0, 55.0];
-/// The margin of curves to the frame, part of the width.
-const ROOM: f64 = 0.06;
-/// An axis shows no smaller part of its numbers.
-const FINEST: f64 = 1e-6;
+/// Least distance between two numbers of an axis: to the right, upwards; and if both axes have the same
+/// scale.
+const NUMBER_DISTANCE: [f64; 2] = [75.0, 28.0];
+const EQUAL_DISTANCE: [f64; 2] = [55.0, 55.0];
+/// The margin between curves and frame, relative to the width.
+const CURVE_MARGIN: f64 = 0.06;
+/// The smallest range of an axis relative to its values.
+const MIN_RANGE: f64 = 1e-6;
 
-type Reason = Box<dyn std::error::Error>;
+type DrawError = Box<dyn std::error::Error>;
 
-/// The figure on a sheet.
+/// Draws the figure on a sheet.
 ///
 /// # Errors
 ///
-/// What the plotting library says.
-pub fn draw(figure: &Figure) -> Result<Sheet, Reason> {
+/// An error of the plotting library.
+pub fn draw(figure: &Figure) -> Result<Sheet, DrawError> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let rows = figure.panels.len().div_ceil(columns);
     let [wide, high] = figure.panel_size;
@@ -62,7 +63,7 @@ pub fn draw(figure: &Figure) -> Result<Sheet, Reason> {
     let canvas = Canvas::new([width, bottom + space + below + MARGIN]);
     let title = Label::words(&figure.title);
     text(&canvas, title.marked(), [width / 2.0, MARGIN + TITLE], TITLE);
-    // Panels above each other have their axes above each other.
+    // Align the axes of panels in a column.
     let mut lefts = vec![0.0_f64; columns];
     for (index, panel) in figure.panels.iter().enumerate() {
         let left = &mut lefts[index % columns];
@@ -88,20 +89,20 @@ fn text(canvas: &Canvas, marked: &str, at: [f64; 2], size: f64) {
     }
 }
 
-/// Where the axes of a panel are, and their numbers.
+/// The positions of the axes of a panel, and their numbers.
 struct Frame {
     scales: [Scale; 2],
-    /// above the frame, and below it
+    /// height above and below the frame
     caption: f64,
     below: f64,
-    /// the place of the numbers and the name on the left
+    /// width of the numbers and the name on the left
     left: f64,
     width: f64,
     height: f64,
 }
 
 impl Frame {
-    /// Of a panel of a size; `left` is the least place on the left.
+    /// The frame of a panel of a given size; `least` is the smallest width on the left.
     fn new(panel: &Panel, size: [f64; 2], least: f64) -> Frame {
         let caption = if panel.title == Label::default() { MARGIN / 2.0 } else { CAPTION_LINE };
         let below = NAME_LINE + NUMBER + 2.5 * TICK;
@@ -118,8 +119,8 @@ impl Frame {
             let exponent = scales[0].exponent.max(scales[1].exponent);
             scales = scales.map(|scale| scale.with_exponent(exponent));
         }
-        // The numbers need place, and what they are depends on the place that is left.
-        let apart = if panel.equal { EQUALLY_APART } else { NUMBERS_APART };
+        // The width of the numbers depends on the ticks, and these on the remaining width.
+        let apart = if panel.equal { EQUAL_DISTANCE } else { NUMBER_DISTANCE };
         let (mut left, mut width) = (least, size[0]);
         for _ in 0..3 {
             left = least.max(NAME_LINE + scales[1].ticks(height, apart[1]).widest() + 3.0 * TICK);
@@ -138,9 +139,9 @@ fn panel(
     corner: [f64; 2],
     size: [f64; 2],
     frame: &Frame,
-) -> Result<(), Reason> {
+) -> Result<(), DrawError> {
     let &Frame { ref scales, caption, below, left, width, height } = frame;
-    let apart = if panel.equal { EQUALLY_APART } else { NUMBERS_APART };
+    let apart = if panel.equal { EQUAL_DISTANCE } else { NUMBER_DISTANCE };
     let [x, y] = scales;
     let (x_ticks, y_ticks) = (x.ticks(width, apart[0]), y.ticks(height, apart[1]));
     let middle = corner[0] + left + width / 2.0;
@@ -193,7 +194,7 @@ fn panel(
     Ok(())
 }
 
-/// Lines where a quantity is 0.
+/// Lines at the zeros of the axes.
 fn zero_lines(
     canvas: &Canvas,
     scales: &[Scale; 2],
@@ -214,7 +215,7 @@ fn zero_lines(
     }
 }
 
-/// The numbers of an axis: those of the data divided by a power of ten.
+/// The scale of an axis: the range of the data divided by a power of ten.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
     low: f64,
@@ -224,7 +225,7 @@ struct Scale {
 
 /// A number divided by a power of ten.
 fn divided(number: f64, exponent: i32) -> f64 {
-    // In two steps, for a power of ten may be beyond the numbers where the quotient is not.
+    // In two steps, since the power of ten may overflow although the quotient does not.
     let half = exponent / 2;
     number / 10f64.powi(half) / 10f64.powi(exponent - half)
 }
@@ -250,9 +251,9 @@ impl Scale {
             return Scale { low, high, exponent };
         }
         let largest = low.abs().max(high.abs());
-        let width = (high - low).max(FINEST * largest);
+        let width = (high - low).max(MIN_RANGE * largest);
         let width = if width > 0.0 { width } else { 1.0 };
-        let least = if high - low < width { width } else { ROOM * width };
+        let least = if high - low < width { width } else { CURVE_MARGIN * width };
         Scale { low: low - least, high: high + least, exponent }
     }
 
@@ -260,13 +261,13 @@ impl Scale {
         divided(number, self.exponent)
     }
 
-    /// The same numbers divided by another power of ten.
+    /// The same range divided by another power of ten.
     fn with_exponent(self, exponent: i32) -> Self {
         let again = |number| divided(number, exponent - self.exponent);
         Scale { low: again(self.low), high: again(self.high), exponent }
     }
 
-    /// Scales on which a unit has one length, for a plot of this size.
+    /// Scales of equal length per unit, for a plot of this size.
     fn equal(scales: [Scale; 2], size: [f64; 2]) -> [Scale; 2] {
         let unit = [0, 1].map(|axis| (scales[axis].high - scales[axis].low) / size[axis]);
         let unit = unit[0].max(unit[1]);
@@ -277,13 +278,13 @@ impl Scale {
         })
     }
 
-    /// The numbers at an axis of this length, so far from each other at least.
+    /// The ticks of an axis of this length with at least this distance.
     fn ticks(&self, length: f64, apart: f64) -> Ticks {
         let most = (length / apart).floor().max(2.0) as usize;
         let numbers = RangedCoordf64::from(self.low..self.high).key_points(BoldPoints(most));
         let apart = numbers.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let apart = if apart.is_finite() { apart } else { self.high - self.low };
-        // A step of 0.25 needs a digit more than its size says.
+        // A step of 0.25 needs one digit more than its magnitude suggests.
         let digits = (0..12).find(|&digits| {
             let steps = apart * 10f64.powi(digits);
             (steps - steps.round()).abs() < 1e-3 * steps
@@ -309,7 +310,7 @@ impl Scale {
     }
 }
 
-/// The numbers beside an axis.
+/// The numbers at an axis.
 struct Ticks {
     most: usize,
     digits: usize,

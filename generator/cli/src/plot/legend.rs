@@ -6,16 +6,16 @@ use super::font;
 use super::label::Label;
 use super::series::{BLACK, Style, curve, mark, style};
 
-/// Size of the letters, pixels.
+/// Font size, pixels.
 const SIZE: f64 = 12.0;
-/// From line to line.
+/// Line height.
 const LINE: f64 = 20.0;
-/// Length of the example of a curve, and the place it takes.
+/// Length of the sample of a curve, and its width with the gap after it.
 const KEY: [f64; 2] = [34.0, 42.0];
-/// Between two entries of a row.
+/// Distance between two entries of a row.
 const BETWEEN: f64 = 26.0;
 
-/// A curve or mark and what it is.
+/// A curve or mark and its label.
 #[derive(Clone, Debug)]
 pub struct Entry {
     label: Label,
@@ -28,7 +28,7 @@ enum Key {
     Mark(Sign, Option<usize>),
 }
 
-/// The entries of panels, each label once; the mark of several styles is black.
+/// The entries of panels, each label once; a mark with several styles is black.
 pub fn entries<'a>(panels: impl Iterator<Item = &'a Panel>) -> Vec<Entry> {
     let mut curves: Vec<Entry> = Vec::new();
     let mut marks: Vec<Entry> = Vec::new();
@@ -57,7 +57,7 @@ fn width(entry: &Entry) -> f64 {
     KEY[1] + font::width(entry.label.marked(), SIZE)
 }
 
-/// Rows of entries no wider than a width.
+/// Entries in rows of at most a given width.
 fn rows(entries: &[Entry], most: f64) -> Vec<Vec<&Entry>> {
     let mut rows: Vec<Vec<&Entry>> = Vec::new();
     let mut used = f64::INFINITY;
@@ -81,12 +81,12 @@ pub fn height(entries: &[Entry], most: f64) -> f64 {
     rows(entries, most).len() as f64 * LINE
 }
 
-/// The width of a legend of one entry a row.
+/// The width of a legend with one entry per row.
 pub fn column(entries: &[Entry]) -> f64 {
     entries.iter().map(width).fold(0.0, f64::max)
 }
 
-/// Draws rows, each in the middle of a width, from a height on.
+/// Draws rows, each centred in a width, from a height downwards.
 pub fn draw_rows(canvas: &Canvas, entries: &[Entry], most: f64, top: f64) {
     for (index, row) in rows(entries, most).into_iter().enumerate() {
         let all: f64 = row.iter().map(|entry| width(entry) + BETWEEN).sum::<f64>() - BETWEEN;
@@ -98,7 +98,7 @@ pub fn draw_rows(canvas: &Canvas, entries: &[Entry], most: f64, top: f64) {
     }
 }
 
-/// Draws one entry a row, from a place on.
+/// Draws one entry per row, from a position downwards.
 pub fn draw_column(canvas: &Canvas, entries: &[Entry], [x, top]: [f64; 2]) {
     for (index, entry) in entries.iter().enumerate() {
         draw(canvas, entry, [x, top + LINE * (index as f64 + 0.5)]);

@@ -1,9 +1,9 @@
 //! Figures: panels with axes, curves, marks and a legend, written as SVG or PNG.
 //!
-//! [`figure`] says what is shown, [`layout`] where it stands. Drawing goes through the library `plotters`
-//! onto a [`canvas`] that keeps hundredths of a pixel, from which [`svg`] and [`png`] make what
-//! [`file`](mod@file) writes. [`collision`], [`conics`] and [`portrait`] are the
-//! figures of `hodograph plot`.
+//! [`figure`] defines the content, [`layout`] the positions. Drawing goes through the library `plotters` onto
+//! a [`canvas`] that records shapes to hundredths of a pixel; [`svg`] and [`png`] convert them, and
+//! [`file`](mod@file) writes the result. [`collision`], [`conics`] and [`portrait`] are the figures of
+//! `hodograph plot`.
 
 mod canvas;
 pub mod collision;

@@ -8,14 +8,14 @@ use ttf_parser::OutlineBuilder;
 use super::canvas::{Anchor, Colour, Shape, Sheet};
 use super::font;
 
-/// Points of the picture per pixel of the figure.
+/// Pixels of the image per pixel of the figure.
 const SCALE: f32 = 2.0;
 
 /// The bytes of the file.
 ///
 /// # Errors
 ///
-/// The sheet is too large for a picture, in words.
+/// The sheet is too large for an image; the error says its size.
 pub fn write(sheet: &Sheet) -> Result<Vec<u8>, String> {
     let [width, height] = sheet.size.map(|length| (length as f32 * SCALE).ceil() as u32);
     let mut picture =

@@ -1,5 +1,5 @@
-//! The figure of several hodographs of one contact: slip that begins in many directions, for each coefficient
-//! of friction. Hodographs of one system do not meet, but where slip stops.
+//! The figure of several hodographs of one contact: slip that starts in many directions, for each coefficient
+//! of friction. Hodographs of one system do not intersect, except where slip stops.
 
 use hodograph::{ReducedMatrix, invariant_directions, rates};
 
@@ -7,15 +7,15 @@ use super::figure::{Axis, Figure, Legend, Panel, Series};
 use super::label::Label;
 use super::trace::trace;
 
-/// Style of the hodographs, of the one of the given approach, and of directions that slip keeps: where it
-/// grows, where it falls, where it turns away.
+/// The styles of the hodographs, of that of the given approach, and of invariant directions: where slip
+/// grows, where it decreases, where it turns away.
 const STYLES: [usize; 5] = [0, 3, 1, 2, 4];
 
-/// Of so many samples of a course one is drawn.
-const EACH: usize = 5;
+/// Every so many samples of a course one is drawn.
+const STRIDE: usize = 5;
 
-/// The figure of a contact with `starts` hodographs for each coefficient of friction, the one of the given
-/// approach among them. All have its v_n1 and its speed of slip, or without slip |v_n1|.
+/// The figure of a contact with `starts` hodographs for each coefficient of friction, including that of the
+/// given approach. All have its v_n1 and its speed of slip, or without slip |v_n1|.
 pub fn figure(
     title: &str,
     matrix: &ReducedMatrix<f64>,
@@ -55,10 +55,10 @@ pub fn figure(
         for start in (0..starts).rev() {
             let phi = first + std::f64::consts::TAU * start as f64 / starts as f64;
             let found = trace(matrix, [v_n, speed * phi.cos(), speed * phi.sin()], mu, e);
-            // A small figure needs fewer points; the last ones are the end of slip and of the collision.
+            // A small figure needs fewer points; the last ones are the ends of slip and of the collision.
             let last = found.samples.len().saturating_sub(2);
             let kept =
-                found.samples.iter().enumerate().filter(|(index, _)| index % EACH == 0 || *index >= last);
+                found.samples.iter().enumerate().filter(|(index, _)| index % STRIDE == 0 || *index >= last);
             let points = kept.map(|(_, sample)| [sample.velocity[1], sample.velocity[2]]).collect();
             let (words, style) = match start {
                 0 => ("hodograph of the approach given", STYLES[1]),

@@ -3,8 +3,8 @@
 use super::canvas::{Canvas, Colour, Shape};
 use super::figure::Sign;
 
-/// How curves look: colours that readers who do not see all colours tell apart (after Okabe and Ito, darkened
-/// where they are pale on white), and dashes, by which they are told apart in print.
+/// The styles of curves: colours that colour-blind readers can distinguish (after Okabe and Ito, darkened
+/// where they are pale on white), and dashes for print.
 pub const STYLES: [Style; 6] = [
     Style { colour: Colour([0, 114, 178], 1.0), dashes: &[] },
     Style { colour: Colour([213, 94, 0], 1.0), dashes: &[8.0, 3.0] },
@@ -14,14 +14,14 @@ pub const STYLES: [Style; 6] = [
     Style { colour: Colour([130, 100, 0], 1.0), dashes: &[5.0, 2.0, 1.5, 2.0, 1.5, 2.0] },
 ];
 
-/// Colour and dashes, pixels.
+/// The colour, and the lengths of dashes and gaps in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Style {
     pub colour: Colour,
     pub dashes: &'static [f64],
 }
 
-/// The style of a number: after the last colour they begin anew, with other dashes; 36 are told apart.
+/// The style with an index: after the last colour the colours repeat with other dashes; 36 styles differ.
 pub fn style(index: usize) -> Style {
     let count = STYLES.len();
     Style { dashes: STYLES[(index + index / count) % count].dashes, ..STYLES[index % count] }
@@ -30,14 +30,14 @@ pub fn style(index: usize) -> Style {
 pub const BLACK: Colour = Colour([30, 30, 30], 1.0);
 /// Width of curves, pixels.
 const WIDTH: f64 = 1.6;
-/// Points closer than this are one, pixels.
-const CLOSE: f64 = 0.05;
+/// Points closer than this count as one, pixels.
+const MIN_DISTANCE: f64 = 0.05;
 /// Length and half the width of an arrowhead, pixels.
 const ARROW: [f64; 2] = [9.0, 3.6];
-/// An arrowhead where so much of a curve is behind.
+/// The places of arrowheads as parts of the length of a curve.
 const ARROWS_AT: [f64; 2] = [0.3, 0.7];
 
-/// Draws a curve through places of the sheet.
+/// Draws a curve through points of the sheet.
 pub fn curve(canvas: &Canvas, places: &[[f64; 2]], style: Style, directed: bool) {
     let finite = |place: &[f64; 2]| place.iter().all(|number| number.is_finite());
     let pieces: Vec<Vec<[f64; 2]>> =
@@ -54,11 +54,11 @@ pub fn curve(canvas: &Canvas, places: &[[f64; 2]], style: Style, directed: bool)
     }
 }
 
-/// The points without those that cannot be told from their neighbour.
+/// The points without those that are too close to the previous one.
 fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut kept: Vec<[f64; 2]> = Vec::new();
     for (index, point) in points.iter().enumerate() {
-        let far = kept.last().is_none_or(|last| distance(last, point) >= CLOSE);
+        let far = kept.last().is_none_or(|last| distance(last, point) >= MIN_DISTANCE);
         if far || index + 1 == points.len() {
             kept.push(*point);
         }
@@ -74,7 +74,7 @@ fn length(points: &[[f64; 2]]) -> f64 {
     points.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }
 
-/// An arrowhead with its middle so far along a curve.
+/// An arrowhead with its middle at this length along a curve.
 fn arrow(canvas: &Canvas, points: &[[f64; 2]], along: f64, colour: Colour) {
     let (tail, tip) = (place(points, along - ARROW[0] / 2.0), place(points, along + ARROW[0] / 2.0));
     let size = distance(&tail, &tip);
@@ -88,7 +88,7 @@ fn arrow(canvas: &Canvas, points: &[[f64; 2]], along: f64, colour: Colour) {
     canvas.push(Shape::Polygon { points: vec![tip, corner(1.0), corner(-1.0)], colour });
 }
 
-/// The place so far along a curve.
+/// The point at this length along a curve.
 fn place(points: &[[f64; 2]], mut along: f64) -> [f64; 2] {
     for pair in points.windows(2) {
         let step = distance(&pair[0], &pair[1]);

@@ -5,22 +5,22 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::canvas::{Colour, Shape, Sheet};
 
-/// Width and height of the picture, and the room at its border, pixels.
+/// Width and height of the picture, and its margin, pixels.
 const SIZE: [f64; 2] = [480.0, 360.0];
-const BORDER: f64 = 24.0;
-/// Directions of a circle.
-const ROUND: usize = 48;
-/// From where mechanisms in space are seen, rad: turned to the side, and from above.
-const SEEN: [f64; 2] = [0.55, 0.35];
+const MARGIN: f64 = 24.0;
+/// Number of points of a circle.
+const CIRCLE_POINTS: usize = 48;
+/// The direction of view for mechanisms in space, rad: to the side, and from above.
+const VIEW_ANGLES: [f64; 2] = [0.55, 0.35];
 const DARK: [u8; 3] = [0x33, 0x33, 0x33];
 
-/// How places become places of the picture.
+/// The projection of space to the picture.
 struct View {
-    /// to the right, upwards, and towards the eye
+    /// to the right, upwards, and towards the viewer
     axes: [Vector3<f64>; 3],
-    /// pixels for a metre
+    /// pixels per metre
     scale: f64,
-    /// what is in the middle of the picture, along right and up
+    /// the centre of the picture, along right and up
     middle: [f64; 2],
 }
 
@@ -39,7 +39,7 @@ impl View {
     }
 }
 
-/// A mechanism at a moment of a motion.
+/// Draws a mechanism at a moment of a motion.
 pub fn sheet(shown: &Animation, moment: usize) -> Sheet {
     let mut view = View { axes: directions(shown, moment), scale: 1.0, middle: [0.0; 2] };
     let solids: Vec<Placed<'_>> =
@@ -58,7 +58,7 @@ pub fn sheet(shown: &Animation, moment: usize) -> Sheet {
         core.iter().map(|at| view.axes[2].dot(at)).sum::<f64>() / core.len().max(1) as f64
     };
     let mut order: Vec<usize> = (0..solids.len()).collect();
-    // grounds first, then what is fixed, which may hold the others, then from far to near
+    // grounds first, then fixed solids, which may contain others, then from far to near
     let rank = |i: usize| {
         let solid = solids[i].solid;
         if solid.ground {
@@ -89,7 +89,8 @@ pub fn sheet(shown: &Animation, moment: usize) -> Sheet {
     Sheet { size: SIZE, shapes }
 }
 
-/// Right, up, and towards the eye: along the axis across the plane of a motion, else from the side and above.
+/// Right, up, and towards the viewer: perpendicular to the plane of a plane motion, else from the side and
+/// above.
 fn directions(shown: &Animation, moment: usize) -> [Vector3<f64>; 3] {
     let up = Vector3::from(shown.up);
     let moves: Vec<Vector3<f64>> = shown
@@ -98,7 +99,7 @@ fn directions(shown: &Animation, moment: usize) -> [Vector3<f64>; 3] {
         .filter(|point| !point.quiet)
         .filter_map(|point| point.places.get(moment).map(|at| Vector3::from(*at)))
         .collect();
-    // a plane of motion holds all points, and its normal is an axis of every frame
+    // all points of a plane motion lie in its plane, and its normal is an axis of every frame
     let across = (0..3).rev().map(|k| Vector3::ith(k, 1.0)).find(|axis| {
         let turned = |frame: &hodograph_animation::Frame| {
             let axes = frame.axes.get(moment);
@@ -118,7 +119,7 @@ fn directions(shown: &Animation, moment: usize) -> [Vector3<f64>; 3] {
             && shown.frames.iter().all(turned)
     });
     match across {
-        // right is x where the axis is z, and so on round
+        // right is x if the axis is z, and so on cyclically
         Some(eye) => {
             let right = up.cross(&eye);
             if right.sum() < 0.0 { [-right, up, -eye] } else { [right, up, eye] }
@@ -126,19 +127,19 @@ fn directions(shown: &Animation, moment: usize) -> [Vector3<f64>; 3] {
         None => {
             let ahead = if up.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
             let ahead = (ahead - up * up.dot(&ahead)).normalize();
-            let side = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(up), SEEN[0]);
+            let side = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(up), VIEW_ANGLES[0]);
             let right = side * ahead;
             let level = right.cross(&up);
-            let eye = level * SEEN[1].cos() + up * SEEN[1].sin();
+            let eye = level * VIEW_ANGLES[1].cos() + up * VIEW_ANGLES[1].sin();
             [right, eye.cross(&right), eye]
         }
     }
 }
 
-/// A solid where its frame is.
+/// A solid at its place.
 struct Placed<'s> {
     solid: &'s Solid,
-    /// the points whose hull it is
+    /// the points whose convex hull it is
     core: Vec<Vector3<f64>>,
     lines: Vec<Vec<Vector3<f64>>>,
 }
@@ -160,7 +161,7 @@ impl<'s> Placed<'s> {
     }
 }
 
-/// Chooses scale and middle: all that is no ground is seen, and what is struck by it near by.
+/// Chooses scale and centre: all solids are visible except grounds, of which the part nearby is.
 fn fit(view: &mut View, solids: &[Placed<'_>], points: &[Option<Vector3<f64>>]) {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut add = |at: [f64; 2], round: f64| {
@@ -176,7 +177,7 @@ fn fit(view: &mut View, solids: &[Placed<'_>], points: &[Option<Vector3<f64>>]) 
     if low[0] > high[0] {
         return;
     }
-    let widest = [0, 1].map(|i| (high[i] - low[i]) / (SIZE[i] - 2.0 * BORDER));
+    let widest = [0, 1].map(|i| (high[i] - low[i]) / (SIZE[i] - 2.0 * MARGIN));
     let room = widest[0].max(widest[1]);
     view.scale = if room > 0.0 { 1.0 / room } else { 1.0 };
     view.middle = [0, 1].map(|i| 0.5 * (low[i] + high[i]));
@@ -190,8 +191,8 @@ fn draw(view: &View, Placed { solid, core, lines }: &Placed<'_>, shapes: &mut Ve
         let [x, y] = view.flat(*at);
         match solid.round > 0.0 {
             false => outline.push([x, y]),
-            true => outline.extend((0..ROUND).map(|k| {
-                let angle = std::f64::consts::TAU * k as f64 / ROUND as f64;
+            true => outline.extend((0..CIRCLE_POINTS).map(|k| {
+                let angle = std::f64::consts::TAU * k as f64 / CIRCLE_POINTS as f64;
                 [x + solid.round * angle.cos(), y + solid.round * angle.sin()]
             })),
         }
@@ -217,7 +218,7 @@ fn draw(view: &View, Placed { solid, core, lines }: &Placed<'_>, shapes: &mut Ve
     }
 }
 
-/// The convex hull of points, in turn (Andrew's monotone chain).
+/// The convex hull of points, in order (Andrew's monotone chain).
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();
@@ -244,7 +245,7 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     out
 }
 
-/// The parts of `#c8362e`.
+/// The components of a colour such as `#c8362e`.
 fn rgb(colour: &str) -> [u8; 3] {
     let part =
         |i: usize| colour.get(i..i + 2).and_then(|part| u8::from_str_radix(part, 16).ok()).unwrap_or(0x80);

@@ -24,14 +24,14 @@ pub fn write(sheet: &Sheet, title: &str, description: &str) -> String {
     out + "</svg>\n"
 }
 
-/// A length in hundredths, without zeros at its end.
+/// A length to hundredths, without trailing zeros.
 fn short(length: f64) -> String {
     let text = format!("{length:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// The attributes of a colour that fills, or of a line.
+/// The attributes of a fill or stroke colour.
 fn paint(property: &str, Colour([red, green, blue], opacity): Colour) -> String {
     let colour = format!("{property}=\"#{red:02x}{green:02x}{blue:02x}\"");
     if opacity < 1.0 { format!("{colour} {property}-opacity=\"{}\"", short(opacity)) } else { colour }
@@ -88,7 +88,7 @@ fn element(shape: &Shape) -> String {
     }
 }
 
-/// The pieces of a label; what follows an index goes back to the line.
+/// The pieces of a label; text after an index returns to the base line.
 fn pieces(marked: &str, size: f64) -> String {
     let mut out = String::new();
     let mut below = 0.0;

@@ -43,12 +43,12 @@ fn labels_keep_symbols_indices_and_powers_apart() {
     ];
     assert_eq!(pieces, expected);
     assert_eq!(label.plain(), "q_12 [10^\u{2212}3 m]");
-    // Nobody else's words can begin a symbol.
+    // Characters that mark symbols are removed from words.
     assert_eq!(Label::words("a\u{e001}b\nc").marked(), Label::words("abc").marked());
 }
 
-/// A parabola in data is one on the sheet: its second differences are the same to a few hundredths of a
-/// pixel.
+/// A parabola in the data is a parabola on the sheet: its second differences are constant to a few hundredths
+/// of a pixel.
 #[test]
 fn curves_keep_their_form_to_hundredths_of_a_pixel() {
     let figure = figure((0..=40).map(|i| f64::from(i) / 40.0).map(|t| [t, t * t]).collect());
@@ -56,7 +56,7 @@ fn curves_keep_their_form_to_hundredths_of_a_pixel() {
     assert_eq!(places.len(), 41);
     let second: Vec<f64> = places.windows(3).map(|p| p[0][1] - 2.0 * p[1][1] + p[2][1]).collect();
     assert!(second.iter().all(|d| (d - second[0]).abs() < 1e-6), "{second:?}");
-    // The same again from what is written.
+    // The same from the written file.
     let svg = String::from_utf8(figure.bytes(Format::Svg).unwrap()).unwrap();
     let path = svg
         .split(" d=\"")
@@ -73,9 +73,9 @@ fn curves_keep_their_form_to_hundredths_of_a_pixel() {
     }
 }
 
-/// The line of numbers belongs to the same axis as the curve: a mark at a tick stands on its line.
+/// The grid lines belong to the same scale as the curve: a mark at a tick lies on its grid line.
 #[test]
-fn marks_stand_where_the_lines_of_their_numbers_are() {
+fn marks_lie_on_the_grid_lines_of_their_numbers() {
     let mut figure = figure(vec![[0.0, -1.0], [2.0, 1.0]]);
     figure.panels[0].marks.push(Mark {
         label: "here".into(),
@@ -89,7 +89,7 @@ fn marks_stand_where_the_lines_of_their_numbers_are() {
         _ => None,
     });
     let [x, y] = centre.unwrap();
-    // Lines of the grid have two ends; one runs upwards through the mark, one to the right.
+    // Lines of the grid have two ends; one passes vertically through the mark, one horizontally.
     let through = |axis: usize, at: f64| {
         sheet.shapes.iter().any(|shape| match shape {
             Shape::Line { points, .. } => {
@@ -115,7 +115,7 @@ fn equal_axes_keep_a_circle_round() {
 }
 
 #[test]
-fn numbers_beside_axes_are_right_and_never_minus_nothing() {
+fn numbers_at_axes_are_right_and_never_minus_zero() {
     for (low, high) in [(-1.0, 1.0), (-0.3, 0.07), (0.0, 2.5), (-12345.0, 3.0), (1e-9, 3e-9), (99.99, 100.01)]
     {
         let sheet = layout::draw(&figure(vec![[low, low], [high, high]])).unwrap();
@@ -176,15 +176,15 @@ fn pictures_show_what_the_sheet_has() {
         let seen = picture.pixel((2.0 * x) as u32, (2.0 * y) as u32).unwrap();
         assert_eq!([seen.red(), seen.green(), seen.blue()], colour.0);
     }
-    // Letters are there: the title's place is not white.
+    // The title is drawn: its place is not white.
     let dark = |x: u32, y: u32| picture.pixel(x, y).unwrap().red() < 128;
     let middle = picture.width() / 2;
     assert!((middle - 60..middle + 60).any(|x| (30..64).any(|y| dark(x, y))));
 }
 
-/// Eight coordinates are common: no two curves of a panel look alike.
+/// Eight coordinates are common: all curves of a panel look different.
 #[test]
-fn curves_are_told_apart() {
+fn curves_look_different() {
     let looks: Vec<_> = (0..36).map(series::style).map(|style| (style.colour, style.dashes)).collect();
     for (index, look) in looks.iter().enumerate() {
         assert!(!looks[..index].contains(look), "{index}: {look:?}");

@@ -1,4 +1,4 @@
-//! Samples the course of a collision over the normal impulse, densely enough to be drawn.
+//! Samples a collision over the normal impulse, densely enough for a curve.
 
 use hodograph::{Hodograph, Law, ReducedMatrix, Surface, phi_bar};
 
@@ -29,9 +29,9 @@ impl From<hodograph::Snapshot<f64>> for Sample {
 pub struct Trace {
     /// coefficient of friction
     pub mu: f64,
-    /// from approach to the latest end
+    /// from the approach to the latest end
     pub samples: Vec<Sample>,
-    /// where each law ends, in the order of [`Law::ALL`]; `None`: it has no outcome
+    /// the end by each law, in the order of [`Law::ALL`]; `None` if it has no outcome
     pub ends: Vec<Option<Sample>>,
     /// the direction in which slip stops, if it stops by itself, rad
     pub phi_bar: Option<f64>,
@@ -39,10 +39,10 @@ pub struct Trace {
     pub failures: Vec<String>,
 }
 
-/// Samples while slip lasts, and in all if it lasts to the end.
+/// Number of samples while slip lasts, or of the whole collision if slip does not stop.
 const SAMPLES: usize = 400;
 
-/// Follows a collision to the latest of its ends.
+/// Samples a collision up to the latest of its ends.
 pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Trace {
     let mut failures = Vec::new();
     let mut ends = vec![None; Law::ALL.len()];
@@ -68,7 +68,7 @@ pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Tra
 fn course(hodograph: &Hodograph<f64>) -> Vec<Sample> {
     let all = hodograph.normal_impulse();
     let stop = hodograph.impact().phases.slip_end.map_or(all, |sample| sample.impulse.x);
-    // Slip turns most where it is about to stop: the steps get smaller towards there. What follows is a
+    // Slip turns most shortly before it stops, so the steps decrease towards there. After that the curve is a
     // straight line.
     let arc = (0..=SAMPLES).map(|index| {
         let left = 1.0 - index as f64 / SAMPLES as f64;
@@ -103,9 +103,9 @@ mod tests {
                 assert!((near.velocity[2].atan2(near.velocity[1]) - phi).abs() < 1e-2, "{phi}");
             }
             assert_eq!(trace.phi_bar.is_some(), mu > 1.0);
-            // Slip stops exactly where it does.
+            // Slip stops in these cases only.
             assert_eq!(trace.samples.iter().any(|sample| sample.slip() == 0.0), mu > 1.0);
-            // No corner that is not there: neighbours are close.
+            // There are no false corners: consecutive points are close.
             assert!(
                 trace
                     .samples

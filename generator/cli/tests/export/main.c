@@ -19,6 +19,7 @@ int main(void)
     two_sleds_speeds u, rates;
     two_sleds sleds, copy;
     two_sleds_collision hit, other;
+    two_sleds_closed_contact closed;
     two_sleds_surface surface = {0.5, 0.5, TWO_SLEDS_STRONGE};
     double mass[4][4], energy, position[3];
 
@@ -45,6 +46,13 @@ int main(void)
     print("separation", hit.separation, 3);
     print("speeds", (const double *)&hit.speeds, 4);
     print("energy_change", &hit.energy_change, 1);
+    printf("works %.17g %.17g\n", hit.impact.contact_work, hit.impact.normal_work);
+    printf("compressions %d\n", (int)hit.impact.compressions);
+    printf("sensitivity %d %d %d %d %d\n", (int)hit.impact.near_mu_c, (int)hit.impact.grazing, (int)hit.impact.unstable_direction, (int)hit.impact.no_slip, (int)hit.impact.jam);
+    printf("energy_gained %.17g\n", hit.impact.energy_gained);
+    if (two_sleds_contact_mode_bc_ac(&sleds, &q, &u, &surface, &closed) != TWO_SLEDS_OK)
+        return 17;
+    printf("selection %d\n", (int)closed.selection);
 
     /* Within a budget the answer is the same, or there is none. */
     memset(&other, 0, sizeof other);

@@ -10,8 +10,8 @@ use symbolica::domains::rational::Rational;
 
 use hodograph_model::number::Number;
 
-/// The number of a symbol. Users' names never reach the engine: symbols are numbered, and always made in the
-/// order of their numbers, so that the engine's ordering does not depend on what was derived before.
+/// The number of a symbol. Names of users never reach the engine: symbols are numbered, and always created in
+/// the order of their numbers, so that the engine's ordering does not depend on earlier derivations.
 pub type SymbolId = u32;
 
 /// An exact algebraic expression in numbered symbols: rational numbers, sums, products and integer powers.
@@ -122,7 +122,7 @@ impl Expr {
         self.mul(&other.pow(-1))
     }
 
-    /// Opposite.
+    /// Negative.
     pub fn neg(&self) -> Expr {
         Expr(-&self.0)
     }
@@ -135,12 +135,12 @@ impl Expr {
         Expr(self.0.pow(Atom::num(n as i64)))
     }
 
-    /// Sum of many.
+    /// Sum of many terms.
     pub fn sum<'a>(terms: impl IntoIterator<Item = &'a Expr>) -> Expr {
         terms.into_iter().fold(Expr::zero(), |sum, term| sum.add(term))
     }
 
-    /// Products multiplied out.
+    /// The expression with products multiplied out.
     pub fn expand(&self) -> Expr {
         Expr(self.0.expand())
     }
@@ -150,7 +150,7 @@ impl Expr {
         Expr(self.0.derivative(symbol(id)))
     }
 
-    /// With every occurrence of a symbol replaced.
+    /// The expression with every occurrence of a symbol replaced.
     pub fn replace(&self, id: SymbolId, by: &Expr) -> Expr {
         Expr(self.0.replace(Atom::var(symbol(id))).with(by.0.clone()))
     }

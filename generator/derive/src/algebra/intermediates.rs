@@ -2,8 +2,8 @@
 //!
 //! Every symbol stands for an input, a named expression, or a function of expressions. A subexpression that
 //! would otherwise be written out inside larger ones gets a name; equal expressions get the same name, so
-//! that they are computed once. Derivatives follow from the chain rule through the names, and
-//! each is computed once.
+//! that they are computed once. Derivatives follow from the chain rule through the names, and each is
+//! computed once.
 
 mod simplify;
 
@@ -15,7 +15,7 @@ use hodograph_model::number::Number;
 use hodograph_program::program::graph::Input;
 pub use simplify::size;
 
-/// What a symbol stands for.
+/// The meaning of a symbol.
 #[derive(Clone, Debug)]
 pub enum Meaning {
     /// an input: a parameter, coordinate, speed, named input or time
@@ -31,7 +31,7 @@ pub enum Meaning {
     Call(Function, Vec<Expr>),
 }
 
-/// How inputs change along a direction of differentiation; what is not listed is constant.
+/// The derivatives of inputs along a direction; inputs that are not listed are constant.
 #[derive(Clone, Debug, Default)]
 pub struct Direction {
     rates: HashMap<SymbolId, Expr>,
@@ -50,15 +50,15 @@ impl Direction {
     }
 }
 
-/// Most binary digits of a number in a bound. The digits of a square are twice those of its base, and of forty
-/// definitions that square one another there would be no end; a quantity whose bound has more is measured by
-/// itself.
+/// Largest number of binary digits of a number in a bound. A square has twice the digits of its base, so that
+/// forty definitions that square one another would have enormous numbers; a quantity whose bound has more
+/// digits is compared with itself.
 const MOST_DIGITS: u64 = 1000;
-/// A bound that is a greater number is replaced by the size of the value itself: a small part of the 2^40 by which a
-/// divisor that counts as zero is less than its bound.
+/// A bound that is a larger number is replaced by the magnitude of the value itself; compared with the factor
+/// 2^40 between a divisor that counts as zero and its bound, this is small.
 const WIDE: f64 = 65536.0;
 
-/// All symbols of a derivation and what they mean.
+/// All symbols of a derivation and their meanings.
 #[derive(Debug, Default)]
 pub struct Intermediates {
     meanings: Vec<Meaning>,
@@ -75,12 +75,12 @@ impl Intermediates {
         (self.meanings.len() - 1) as SymbolId
     }
 
-    /// What a symbol means.
+    /// The meaning of a symbol.
     pub fn meaning(&self, symbol: SymbolId) -> &Meaning {
         &self.meanings[symbol as usize]
     }
 
-    /// The symbol of a number from outside.
+    /// The symbol of an input.
     pub fn input_symbol(&mut self, input: Input) -> SymbolId {
         if let Some(&symbol) = self.inputs.get(&input) {
             return symbol;
@@ -90,12 +90,12 @@ impl Intermediates {
         symbol
     }
 
-    /// A number from outside.
+    /// An input.
     pub fn input(&mut self, input: Input) -> Expr {
         Expr::symbol(self.input_symbol(input))
     }
 
-    /// pi, as a symbol of its own.
+    /// pi, as a symbol.
     pub fn pi(&mut self) -> Expr {
         let symbol = match self.pi {
             Some(symbol) => symbol,
@@ -115,8 +115,7 @@ impl Intermediates {
         self.meanings[unknown as usize] = Meaning::Named(value);
     }
 
-    /// The expression as a number, a symbol, or a number times a symbol; gives it a name if it is none of
-    /// these.
+    /// The expression as a number, a symbol, or a number times a symbol; any other expression gets a name.
     pub fn name(&mut self, expr: Expr) -> Expr {
         match expr.view() {
             View::Number(_) | View::Symbol(_) => expr,
@@ -129,7 +128,7 @@ impl Intermediates {
                 if rest.as_symbol().is_some() { expr } else { number.mul(&self.name(rest.clone())) }
             }
             View::Product(factors) => {
-                // The numeric coefficient stays outside of the name.
+                // The numeric coefficient is not part of the named expression.
                 match factors.iter().position(Expr::is_number) {
                     Some(at) => {
                         let number = factors[at].clone();
@@ -141,7 +140,7 @@ impl Intermediates {
                 }
             }
             View::Sum(terms) => {
-                // A sum and its opposite share a name: the sign that makes the first term positive.
+                // A sum and its negative share a name: that with the sign that makes the first term positive.
                 let negative = terms.first().is_some_and(|term| leading_number(term).is_negative());
                 if negative { self.name_exactly(opposite(&terms)).neg() } else { self.name_exactly(expr) }
             }
@@ -161,8 +160,8 @@ impl Intermediates {
         Expr::symbol(symbol)
     }
 
-    /// A function of expressions, with the simplifications that structure depends on: odd and even functions
-    /// of opposites, right angles, roots and powers of exact squares.
+    /// A function of expressions, with the simplifications on which structure depends: odd and even functions
+    /// of negatives, right angles, roots and powers of exact squares.
     pub fn call(&mut self, function: Function, arguments: Vec<Expr>) -> Expr {
         use Function::*;
         let arguments: Vec<Expr> = arguments.into_iter().map(|a| self.name(a)).collect();
@@ -182,7 +181,7 @@ impl Intermediates {
                 Tan => {
                     let sine = self.call(Sin, vec![argument.clone()]);
                     let cosine = self.call(Cos, vec![argument.clone()]);
-                    // At a right angle it stays as it is: `check` refuses it.
+                    // At a right angle the function is left unevaluated, and `check` refuses it.
                     if !cosine.is_zero() {
                         return sine.div(&cosine);
                     }
@@ -224,7 +223,7 @@ impl Intermediates {
         Expr::symbol(symbol)
     }
 
-    /// How many right angles an expression is, if it is a whole number of them.
+    /// The number of right angles in an expression, if it is an integer multiple of one.
     fn quarter_turns(&mut self, argument: &Expr) -> Option<i64> {
         if argument.is_zero() {
             return Some(0);
@@ -278,7 +277,7 @@ impl Intermediates {
         rate
     }
 
-    /// Derivative of a function (whose value is `symbol`) with respect to its argument number `i`.
+    /// Derivative of a function (whose value is `symbol`) with respect to its argument with index `i`.
     fn slope(&mut self, symbol: SymbolId, function: Function, arguments: &[Expr], i: usize) -> Expr {
         use Function::*;
         let value = Expr::symbol(symbol);
@@ -309,7 +308,7 @@ impl Intermediates {
             Abs => self.call(Sign, vec![a]),
             Sign => Expr::zero(),
             Min | Max => {
-                // (1 +- sign(a - b)) / 2: the branch that is taken.
+                // (1 +- sign(a - b)) / 2: the active branch.
                 let sign = self.call(Sign, vec![a.sub(&arguments[1])]);
                 let sign = if (function == Max) == (i == 0) { sign } else { sign.neg() };
                 Expr::one().add(&sign).mul(&Expr::number(&Number::ratio(1, 2)))
@@ -317,8 +316,8 @@ impl Intermediates {
         }
     }
 
-    /// An upper bound of the magnitude of an expression that is made of parameters wherever possible: the
-    /// scale against which a divisor counts as zero.
+    /// An upper bound of the magnitude of an expression, made of parameters where possible: the scale
+    /// relative to which a divisor counts as zero.
     pub fn bound(&mut self, expr: &Expr) -> Expr {
         let bound = match expr.view() {
             View::Number(number) => {
@@ -405,14 +404,15 @@ impl Intermediates {
     }
 }
 
-/// Binary digits of the number in an expression that [`Intermediates::name`] gave.
+/// Number of binary digits of the number in an expression from [`Intermediates::name`].
 fn digits(named: &Expr) -> u64 {
     let number = leading_number(named).0;
     number.numer().bits() + number.denom().bits()
 }
 
-/// Whether a bound is a number so large that it may be far above what it bounds: bounds of values that square one
-/// another grow like the squares, while the values stay near 1. Beside such a bound any divisor would count as zero.
+/// Whether a bound is such a large number that it may be far above the value: bounds of values that square
+/// one another grow like the squares, while the values stay near 1. Relative to such a bound any divisor
+/// would count as zero.
 fn is_wide(bound: &Expr) -> bool {
     match bound.view() {
         View::Number(number) => number.to_f64() > WIDE,
@@ -420,7 +420,7 @@ fn is_wide(bound: &Expr) -> bool {
     }
 }
 
-/// The opposite of a sum, term by term.
+/// The negative of a sum, term by term.
 fn opposite(terms: &[Expr]) -> Expr {
     let terms: Vec<_> = terms.iter().map(Expr::neg).collect();
     Expr::sum(&terms)

@@ -1,8 +1,8 @@
-//! Decides whether an expression is identically 0, by evaluating it at arbitrary values of its inputs.
+//! Decides whether an expression is identically 0, by evaluating it at random values of its inputs.
 //!
-//! The algebra does not see all cancellation, since named expressions are not multiplied out; a vector that
-//! is transformed to turning axes and back is an example. An expression that is not identically 0 is 0 at
-//! random inputs with probability 0.
+//! The algebra does not recognise every cancellation, since named expressions are not multiplied out; a
+//! vector that is transformed to rotating axes and back is an example. An expression that is not identically
+//! 0 vanishes at random inputs with probability 0.
 
 use std::collections::HashMap;
 
@@ -14,16 +14,16 @@ use hodograph_program::program::graph::Input;
 /// The rounding error of a sum that is exactly 0, relative to the size of its terms.
 const ROUNDING: f64 = 1e-12;
 
-/// A value, and the size of the terms that rounding errors come from.
+/// A value, and the sum of the magnitudes of the terms that cause rounding errors.
 #[derive(Clone, Copy, Debug)]
 struct Sized {
     value: f64,
     terms: f64,
-    /// a number from outside: nothing has been rounded
+    /// an input, which has no rounding error
     exact: bool,
 }
 
-/// Sines of angles that are not known to so much (rad) say nothing.
+/// Sines of angles with a greater uncertainty (rad) give no information.
 const ANGLE_KNOWN: f64 = 1e-3;
 
 impl Sized {
@@ -31,7 +31,7 @@ impl Sized {
         Sized { value, terms: value.abs(), exact: true }
     }
 
-    /// A function of it that changes by `slope` where it changes by 1.
+    /// A function of the value with this derivative.
     fn mapped(self, value: f64, slope: f64) -> Self {
         let brought = if self.exact { 0.0 } else { slope.abs() * self.terms };
         Sized::rounded(value, value.abs() + brought)
@@ -41,14 +41,14 @@ impl Sized {
         Sized { value, terms, exact: false }
     }
 
-    /// A function of it as an angle: of large angles only exact ones are known well enough.
+    /// A function of the value as an angle: large angles must be exact.
     fn turned(self, value: f64, slope: f64) -> Self {
         let known = self.exact || ROUNDING * self.terms <= ANGLE_KNOWN;
         self.mapped(if known { value } else { f64::NAN }, slope)
     }
 }
 
-/// Numbers for everything that comes from outside.
+/// Values of all inputs.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
     inputs: HashMap<Input, f64>,
@@ -56,17 +56,17 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// A sample in which the inputs have these values; others have none.
+    /// A sample in which these inputs have values, and others have none.
     pub fn new(inputs: HashMap<Input, f64>) -> Self {
         Sample { inputs, known: HashMap::new() }
     }
 
-    /// The value of an expression, if it has one here.
+    /// The value of an expression, if it has one in this sample.
     pub fn value(&mut self, z: &Intermediates, expr: &Expr) -> Option<f64> {
         Some(self.sized(z, expr).value).filter(|value| value.is_finite())
     }
 
-    /// Whether the expression is 0 here, but for rounding. `None` if it has no value.
+    /// Whether the expression is 0 in this sample up to rounding. `None` if it has no value.
     pub fn vanishes(&mut self, z: &Intermediates, expr: &Expr) -> Option<bool> {
         let Sized { value, terms, .. } = self.sized(z, expr);
         (value.is_finite() && terms.is_finite()).then(|| value.abs() <= ROUNDING * terms)
@@ -101,7 +101,7 @@ impl Sample {
         let value = match z.meaning(symbol) {
             Meaning::Input(input) => Sized::exact(self.inputs.get(input).copied().unwrap_or(f64::NAN)),
             Meaning::Pi => Sized::rounded(std::f64::consts::PI, std::f64::consts::PI),
-            // It may be defined later: nothing is remembered.
+            // It may be defined later, so the result is not stored.
             Meaning::Unknown => Sized::exact(f64::NAN),
             Meaning::Named(value) => self.sized(z, value),
             Meaning::Call(function, arguments) => {

@@ -1,8 +1,8 @@
 //! Runs one derivation at a time. The engine allows one thread per user and aborts the process otherwise.
 //!
-//! A lock file excludes other processes and a mutex excludes other threads of this one. The work runs on a
-//! new thread with a large stack, returns owned data only, and ends before the locks are released. Nothing
-//! else starts the engine.
+//! A lock file excludes other processes, and a mutex excludes other threads of this one. The work runs on a
+//! new thread with a large stack, returns owned data only, and ends before the locks are released. No other
+//! code uses the engine.
 
 mod lock;
 
@@ -13,21 +13,21 @@ use std::thread;
 
 pub use lock::lock_path;
 
-/// Why no session could be held.
+/// Why no session could be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SessionError {
     /// the lock file cannot be used
     Lock {
         /// its path
         path: PathBuf,
-        /// what the system said
+        /// the error of the system
         reason: String,
     },
     /// the engine needs a home directory that can be written
     Home {
         /// the home directory
         path: PathBuf,
-        /// what the system said
+        /// the error of the system
         reason: String,
     },
     /// the thread could not be started
@@ -60,13 +60,13 @@ impl std::fmt::Display for SessionError {
 
 impl std::error::Error for SessionError {}
 
-/// Stack of the working thread: expressions are walked recursively.
+/// Stack of the working thread, since expressions are traversed recursively.
 const STACK: usize = 512 << 20;
 
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Runs `work` as the only user of the algebra engine, waiting (and saying so on stderr) while another holds
-/// it.
+/// Runs `work` as the only user of the algebra engine. Waits while another process uses the engine, and
+/// reports this on standard error.
 pub fn exclusively<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static) -> Result<R, SessionError> {
     let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let lock = lock::acquire()?;
@@ -83,11 +83,11 @@ pub fn exclusively<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static)
     result
 }
 
-/// The engine keeps its permit below the home directory, and ends the process where it cannot: that is found
-/// out before.
+/// Checks that the engine can store its permit below the home directory, since it ends the process if it
+/// cannot.
 fn writable_home() -> Result<(), SessionError> {
     let Some(home) = std::env::home_dir().filter(|home| !home.as_os_str().is_empty()) else { return Ok(()) };
-    // A name that nobody can have put there before: a file that exists, or a link, is not opened.
+    // The name is unpredictable; an existing file or link is not opened.
     let now = std::time::UNIX_EPOCH.elapsed().map_or(0, |since| since.as_nanos());
     let probe = home.join(format!(".hodograph-{}-{now}", std::process::id()));
     let written = std::fs::create_dir_all(&home)

@@ -85,7 +85,7 @@ pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
     z.name(simple)
 }
 
-/// Where the mass of a body that turns on a joint is counted.
+/// The body to which the mass on a joint axis is attributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Masses {
     /// on the other side of the joint, as everything that lies on its axis: fewest parameters
@@ -167,7 +167,7 @@ fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (
     (at, linear_forms::name(&mut k.z, way))
 }
 
-/// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
+/// Moves mass on joint axes to the other side of the joint, from the leaves to the ground.
 fn regroup(k: &mut Kinematics<'_>, inertias: &mut BTreeMap<Attachment, LumpedInertia>, masses: Masses) {
     let mut frames: Vec<FrameId> =
         inertias.keys().map(|attachment| attachment.0).filter(|&f| f != FrameId::N).collect();

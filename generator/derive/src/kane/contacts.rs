@@ -47,7 +47,15 @@ pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact, along: Along) ->
     let normal = k.express(&normal, axes);
     let relative = relative_velocity(k, contact, axes, along);
     let relative = without_dependent(k, &relative);
-    let (first, second) = tangents(k, &normal, &relative);
+    let (first, second) = match &contact.tangent {
+        Some(tangent) => {
+            let tangent = k.vector(tangent);
+            let first = k.express(&tangent, axes);
+            let second = linear_forms::cross(&normal, &first);
+            (first, linear_forms::name(&mut k.z, second))
+        }
+        None => tangents(k, &normal, &relative),
+    };
     let basis: [Triple; 3] = [normal, first, second];
     let rows = along_basis(k, &relative, &basis);
     let turning = contact.turning.map(|frames| {

@@ -9,8 +9,8 @@ use crate::kinematics::linear_forms::{self, Triple};
 use hodograph_model::model::mechanism::{FrameId, Place, PointId};
 use hodograph_program::program::Quantity;
 
-/// The quantities that the mechanism has, along N.x, N.y, N.z: those of positions only where all mass centres
-/// have a place, relative to O or at least to each other.
+/// The quantities that the mechanism has, along N.x, N.y, N.z. Those of positions require that all mass
+/// centres have positions relative to O, or at least to each other.
 pub fn momenta(k: &mut Kinematics<'_>) -> Vec<(Quantity, Triple)> {
     let Some(first) = k.mechanism.bodies.first().map(|body| body.centre) else { return Vec::new() };
     let centres: Vec<PointId> = k.mechanism.bodies.iter().map(|body| body.centre).collect();

@@ -32,12 +32,12 @@ struct Writer<'k, 'm> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
     inertias: BTreeMap<Attachment, LumpedInertia>,
-    /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where
-    /// dependent speeds enter
+    /// upper bounds of the diagonal entries of the mass matrix for all configurations; empty if there are
+    /// dependent speeds
     largest: Vec<Node>,
-    /// the mass matrix factorised by articulated inertias, where the mechanism permits
+    /// the mass matrix factorised by articulated inertias, if the mechanism allows it
     articulated: Option<Articulated>,
-    /// dependent coordinates: how each changes with independent ones
+    /// derivatives of the dependent coordinates with respect to independent ones
     followers: Vec<(Input, Vec<(Input, Node)>)>,
 }
 
@@ -81,7 +81,8 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     writer.guards();
     let samples = super::samples::samples(writer.k.mechanism);
     let mut apart = if rates.is_some() { writer.derivatives(&samples) } else { Vec::new() };
-    // Their operations do not shape those of the equations of motion, nor their numbers.
+    // A separate derivation, so that its operations and numbers do not affect those of the equations of
+    // motion.
     let (graph, outputs, guards) = (writer.graph.clone(), writer.outputs.split_off(0), writer.guards.clone());
     apart.extend(writer.momenta(&samples));
     Derived { graph, outputs, guards, structures, samples, apart, solve: None }
@@ -120,13 +121,13 @@ impl Writer<'_, '_> {
         self.put(Quantity::ConstraintResidual, nodes.len(), 1, nodes);
     }
 
-    /// The mass matrix in independent speeds, and what couples them to prescribed motion.
+    /// The mass matrix in independent speeds, and its coupling with prescribed motion.
     fn mass_matrix(&mut self) -> (Vec<Vec<Node>>, Vec<Node>) {
         let full = inertia::full_mass_matrix(self.k, &self.inertias);
         let remainder = self.k.speeds.len();
         let entry = |r: usize, s: usize| full.get(&(r.min(s), r.max(s))).cloned().unwrap_or_else(Expr::zero);
         let (independent, dependent) = (self.independent.clone(), self.dependent.clone());
-        // rows of the dependent speeds, with their own dependence inserted: M_d = M_di + M_dd A (and
+        // rows of the dependent speeds, after substitution of their own dependence: M_d = M_di + M_dd A (and
         // prescribed motion)
         let mut rows: BTreeMap<(usize, usize), Expr> = BTreeMap::new();
         for &d in &dependent {
@@ -185,8 +186,8 @@ impl Writer<'_, '_> {
         self.guards.extend(pivots);
     }
 
-    /// The pivots of a factor of the mass matrix, which must not vanish beside the `largest` that its
-    /// diagonal can be.
+    /// The pivots of a factor of the mass matrix, which must not vanish relative to the `largest` values of
+    /// its diagonal.
     fn pivots(&self, graph: &Graph, factor: &Factor, largest: &[Node]) -> Vec<Guard<Node>> {
         let open = factor.pivots.iter().filter(|(value, ..)| graph.as_number(*value).is_none());
         let guard = |&(value, scale, row): &(Node, Node, usize)| {
@@ -211,20 +212,20 @@ impl Writer<'_, '_> {
         self.nodes(&result)
     }
 
-    /// Derivatives of all speeds where those of the independent ones vanish.
+    /// Derivatives of all speeds if those of the independent ones vanish.
     fn bias(&self) -> Vec<Expr> {
         let of = |slot| self.k.dependent_bias.get(&slot).cloned().unwrap_or_else(Expr::zero);
         (0..self.k.speeds.len()).map(of).collect()
     }
 
-    /// What speeds alone add to accelerations, relation by relation.
+    /// The parts of accelerations that depend on speeds alone, relation by relation.
     fn apart(&mut self) -> Accelerations {
         let ground = forces::ground(self.k);
         Accelerations::apart(self.k.speeds.len(), ground)
     }
 
-    /// Sets up articulated inertias for all forces of the mechanism and its contacts, where it permits; the
-    /// forces.
+    /// Sets up articulated inertias for all forces of the mechanism and its contacts, if the mechanism allows
+    /// it; returns the forces.
     fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
         let mut apart = self.apart();
         let inertias = base_parameters::lumped_inertias(self.k, Masses::InBody);
@@ -236,7 +237,7 @@ impl Writer<'_, '_> {
         acting
     }
 
-    /// Makes sure that articulated inertias that are used are checked.
+    /// Adds guards for the articulated inertias that are used.
     fn guard_articulated(&mut self, articulated: &Articulated) {
         for (pivot, slot) in articulated.pivots() {
             let value = self.node(&pivot);
@@ -267,8 +268,8 @@ impl Writer<'_, '_> {
         let half = factor.half_solve(&mut self.graph, &forcing);
         let mut accelerations = factor.finish(&mut self.graph, &half);
         if let Some(articulated) = self.articulated.take() {
-            // Even where it costs more: the factorised mass matrix loses digits wherever outer joints give
-            // way to inner ones.
+            // Even if it takes more operations: the factorised mass matrix loses digits if outer joints yield
+            // to inner ones.
             if let Some(nodes) = self.accelerations(&articulated, acting) {
                 accelerations = nodes;
                 self.guard_articulated(&articulated);
@@ -288,7 +289,7 @@ impl Writer<'_, '_> {
         }
         self.put(Quantity::DependentAccelerations, dependent.len(), 1, dependent);
 
-        // The same forces with accelerations from outside, with the opposite sign.
+        // The same forces for given accelerations, with the opposite sign.
         let given: Vec<Expr> =
             (0..self.independent.len()).map(|i| self.k.z.input(Input::Acceleration(i as u32))).collect();
         let mut derivatives = at_rest;
@@ -307,8 +308,8 @@ impl Writer<'_, '_> {
         self.put(Quantity::InverseDynamics, required.len(), 1, required);
     }
 
-    /// A direction in the independent states and inputs: how each input changes along it. `None` where
-    /// dependent coordinates do not follow.
+    /// A direction in the independent states and inputs: the derivative of each input along it. `None` if
+    /// dependent coordinates cannot be determined.
     fn direction(&mut self) -> Option<HashMap<Input, Node>> {
         let mechanism = self.k.mechanism;
         let followers = self.dependent_coordinate_rates()?;
@@ -365,8 +366,8 @@ impl Writer<'_, '_> {
         self.put(Quantity::StateTangent, tangent.len(), 1, tangent);
     }
 
-    /// Dependent coordinates as they follow the independent ones: forms in the numbers of coordinates. `None`
-    /// where the configuration equations cannot be solved for them.
+    /// Derivatives of dependent coordinates with respect to independent ones, as forms in the indices of
+    /// coordinates. `None` if the configuration equations cannot be solved for them.
     fn dependent_coordinate_rates(&mut self) -> Option<BTreeMap<usize, LinearScalar>> {
         let mechanism = self.k.mechanism;
         let dependent: Vec<usize> =
@@ -406,7 +407,7 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// Momenta, and place and velocity of the mass centre, as a derivation of their own.
+    /// Momenta, and position and velocity of the mass centre, as a separate derivation.
     fn momenta(mut self, samples: &[Inputs]) -> Option<Derived> {
         let before = self.k.guards.len();
         for (quantity, components) in momentum::momenta(self.k) {

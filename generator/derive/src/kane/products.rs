@@ -11,8 +11,8 @@ use crate::kinematics::linear_forms::{self, Triple};
 pub struct Products(BTreeMap<(usize, usize), Expr>);
 
 impl Products {
-    /// Adds to an entry. An entry beside the diagonal stands for both halves, so that the form gains the
-    /// whole product.
+    /// Adds to an entry. An off-diagonal entry represents both halves, so that the form gains the whole
+    /// product.
     pub fn add(&mut self, r: usize, s: usize, value: &Expr) {
         sum_scalar(&mut self.0, (r.min(s), r.max(s)), value);
     }
@@ -32,21 +32,20 @@ impl Products {
         }
     }
 
-    /// Adds what half a quadratic form takes from one slot, by its momentum and the partial velocities of
-    /// slots up to its own, which stands last: the square once, and the product with every other speed
-    /// fully.
+    /// Adds the products of half a quadratic form in the slot of its momentum with the partial velocities of
+    /// slots up to its own, which is last: the square once, and the product with every other speed fully.
     pub fn add_square(&mut self, partials: &[(usize, Triple)], momentum: &Triple) {
         let Some(((slot, own), before)) = partials.split_last() else { return };
         self.add_products(*slot, momentum, before);
         self.add(*slot, *slot, &linear_forms::dot(own, momentum));
     }
 
-    /// Takes out the entry of a slot on the diagonal.
+    /// Removes and returns the diagonal entry of a slot.
     pub fn take_square(&mut self, slot: usize) -> Option<Expr> {
         self.0.remove(&(slot, slot))
     }
 
-    /// Takes out what is left beside a slot, with the slots of the other factors.
+    /// Removes and returns the off-diagonal entries of a slot, with the slots of the other factors.
     pub fn take(&mut self, slot: usize) -> Vec<(usize, Expr)> {
         let entries = take_where(&mut self.0, |key| key.0 == slot || key.1 == slot).into_iter();
         entries.map(|(key, value)| (if key.0 == slot { key.1 } else { key.0 }, value)).collect()

@@ -6,14 +6,14 @@ use hodograph_model::arbitrary::Arbitrary;
 use hodograph_model::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_program::program::Inputs;
 
-/// How many.
+/// Number of samples.
 const SAMPLES: u64 = 24;
 
 /// Half a turn in the units of angles that coordinates commonly have.
 const HALF_TURNS: [(&str, f64); 4] = [("rad", PI), ("mrad", 1000.0 * PI), ("deg", 180.0), ("rev", 0.5)];
 
-/// States all over the mechanism's range and parameters of common sizes, the same ones every time. Default
-/// values do not enter, so that equations are the same whatever they are.
+/// Random states over the mechanism's whole range, and parameters of common sizes, always the same. Default
+/// values are not used, so that the equations do not depend on them.
 pub fn samples(mechanism: &Mechanism) -> Vec<Inputs> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
 }
@@ -28,7 +28,7 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
             None => parameter.typical * (1.0 + 0.5 * next()),
         });
     let parameters: Vec<f64> = parameters.collect();
-    // An angle may be any; anything else is of the size that its unit suggests.
+    // An angle may have any value; other quantities have the size that their unit suggests.
     let mut around = |quantity: &Variable, angle: bool| match half_turn(&quantity.unit) {
         Some(half_turn) if angle => half_turn * next(),
         _ => 2.0 * quantity.typical * next(),

@@ -1,4 +1,4 @@
-//! Maps of sums: adds to entries and takes entries out.
+//! Maps of sums: adds to entries, and removes entries.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub fn sum_scalar<K: Ord>(map: &mut BTreeMap<K, Expr>, key: K, value: &Expr) {
     map.insert(key, sum);
 }
 
-/// Adds to a vector; zeros make no entry.
+/// Adds to a vector; zeros create no entry.
 pub fn sum_triple<K: Ord>(map: &mut BTreeMap<K, Triple>, key: K, value: &Triple) {
     if linear_forms::is_zero(value) {
         return;
@@ -21,7 +21,7 @@ pub fn sum_triple<K: Ord>(map: &mut BTreeMap<K, Triple>, key: K, value: &Triple)
     map.insert(key, sum);
 }
 
-/// Adds to a matrix by rows; zeros make no entry.
+/// Adds to a matrix by rows; zeros create no entry.
 pub fn sum_matrix<K: Ord>(map: &mut BTreeMap<K, [Triple; 3]>, key: K, value: &[Triple; 3]) {
     if value.iter().all(linear_forms::is_zero) {
         return;
@@ -42,13 +42,13 @@ pub fn sum_symmetric<K: Ord>(map: &mut BTreeMap<K, Symmetric>, key: K, value: &S
     map.insert(key, sum);
 }
 
-/// Takes out the entries whose keys pass, in the order of the keys.
+/// Removes and returns the entries whose keys satisfy `passes`, in the order of the keys.
 pub fn take_where<K: Ord + Copy, V>(map: &mut BTreeMap<K, V>, passes: impl Fn(&K) -> bool) -> Vec<(K, V)> {
     let keys: Vec<K> = map.keys().copied().filter(passes).collect();
     keys.into_iter().filter_map(|key| map.remove_entry(&key)).collect()
 }
 
-/// Takes out everything whose key begins with this, in the order of the rest of the keys.
+/// Removes and returns everything whose key begins with `first`, in the order of the rest of the keys.
 pub fn take_by_first<A: Ord + Copy, B: Ord + Copy, V>(
     map: &mut BTreeMap<(A, B), V>,
     first: A,
@@ -56,7 +56,7 @@ pub fn take_by_first<A: Ord + Copy, B: Ord + Copy, V>(
     take_where(map, |key| key.0 == first).into_iter().map(|(key, value)| (key.1, value)).collect()
 }
 
-/// Takes out everything whose key ends with this, in the order of the rest of the keys.
+/// Removes and returns everything whose key ends with `second`, in the order of the rest of the keys.
 pub fn take_by_second<A: Ord + Copy, B: Ord + Copy, V>(
     map: &mut BTreeMap<(A, B), V>,
     second: B,

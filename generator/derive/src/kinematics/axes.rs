@@ -9,7 +9,7 @@ use hodograph_model::model::mechanism::{Axis, FrameId};
 /// Index of a set of axes.
 pub type AxesId = usize;
 
-/// How a set of axes is turned against its parent.
+/// The rotation of a set of axes relative to its parent.
 #[derive(Clone, Debug)]
 pub enum Turn {
     /// right-handed, about an axis of the parent: sine and cosine of the angle
@@ -30,7 +30,7 @@ pub enum Turn {
 /// A set of axes.
 #[derive(Clone, Debug)]
 pub struct Axes {
-    /// the axes it is turned against; `None` for those of N
+    /// the axes relative to which it is rotated; `None` for those of N
     pub parent: Option<(AxesId, Turn)>,
     /// the frame whose angular velocity it has
     pub owner: FrameId,
@@ -44,7 +44,7 @@ pub struct AxesTree {
 }
 
 impl AxesTree {
-    /// The axes of N alone, number 0.
+    /// The axes of N alone, with index 0.
     pub fn new() -> Self {
         AxesTree { axes: vec![Axes { parent: None, owner: FrameId::N, depth: 0 }] }
     }
@@ -52,14 +52,14 @@ impl AxesTree {
     /// The axes of N.
     pub const N: AxesId = 0;
 
-    /// Adds axes turned against others.
+    /// Adds axes that are rotated relative to others.
     pub fn push(&mut self, parent: AxesId, turn: Turn, owner: FrameId) -> AxesId {
         let depth = self.axes[parent].depth + 1;
         self.axes.push(Axes { parent: Some((parent, turn)), owner, depth });
         self.axes.len() - 1
     }
 
-    /// How a set of axes is turned against its parent; `None` for N.
+    /// The rotation of a set of axes relative to its parent; `None` for N.
     pub fn turn(&self, axes: AxesId) -> Option<&Turn> {
         self.axes[axes].parent.as_ref().map(|(_, turn)| turn)
     }
@@ -74,7 +74,7 @@ impl AxesTree {
         self.axes[axes].parent.as_ref().map(|(parent, _)| *parent)
     }
 
-    /// Whether the axes of `below` are turned, in any number of steps, against those of `above`.
+    /// Whether the axes `below` are rotated, in any number of steps, relative to the axes `above`.
     pub fn descends(&self, mut below: AxesId, above: AxesId) -> bool {
         while self.axes[below].depth > self.axes[above].depth {
             below = self.parent(below).unwrap_or(Self::N);
@@ -82,7 +82,7 @@ impl AxesTree {
         below == above
     }
 
-    /// The deepest axes against which both are turned.
+    /// The deepest common ancestor of two sets of axes.
     pub fn common(&self, mut a: AxesId, mut b: AxesId) -> AxesId {
         while a != b {
             if self.axes[a].depth >= self.axes[b].depth {
@@ -94,14 +94,13 @@ impl AxesTree {
         a
     }
 
-    /// Number of turns on the way from one set of axes to another.
+    /// Number of rotations between two sets of axes.
     pub fn distance(&self, from: AxesId, to: AxesId) -> usize {
         let top = self.common(from, to);
         self.axes[from].depth + self.axes[to].depth - 2 * self.axes[top].depth
     }
 
-    /// The unit vectors of one set of axes along another; each matrix on the way is formed once, by whoever
-    /// asks first.
+    /// The unit vectors of one set of axes along another; each matrix on the way is formed once and stored.
     pub fn columns(&self, z: &mut Intermediates, from: AxesId, to: AxesId) -> [Triple; 3] {
         if from == to {
             return std::array::from_fn(unit);
@@ -122,7 +121,7 @@ impl AxesTree {
         known.map(|column| name(z, down(turn, &column)))
     }
 
-    /// As `convert`, by the matrix between the axes where that is shared by many vectors on a long way.
+    /// Like `convert`, but with the matrix between the axes if it is shared by many vectors on a long way.
     pub fn convert_far(&self, z: &mut Intermediates, v: &Triple, from: AxesId, to: AxesId) -> Triple {
         if self.distance(from, to) < 2 || super::linear_forms::is_zero(v) {
             return self.convert(z, v, from, to);
@@ -133,7 +132,7 @@ impl AxesTree {
         name(z, sum)
     }
 
-    /// The same vector along other axes, its components named on the way.
+    /// The same vector along other axes; its components are named on the way.
     pub fn convert(&self, z: &mut Intermediates, v: &Triple, from: AxesId, to: AxesId) -> Triple {
         if from == to || super::linear_forms::is_zero(v) {
             return v.clone();
@@ -142,7 +141,7 @@ impl AxesTree {
             .fold(v.clone(), |v, (turn, back)| name(z, if back { down(turn, &v) } else { up(turn, &v) }))
     }
 
-    /// The turns from some axes to others: up to what both stand on, then back.
+    /// The rotations from one set of axes to another: up to the common ancestor, then down.
     fn way(&self, from: AxesId, to: AxesId) -> impl Iterator<Item = (&Turn, bool)> {
         let top = self.common(from, to);
         let below = move |from: AxesId| {
@@ -178,14 +177,14 @@ pub fn is_isotropic(m: &Symmetric) -> bool {
     m[0] == m[1] && m[1] == m[2] && m[3..].iter().all(Expr::is_zero)
 }
 
-/// Where entry (i, j) of a symmetric matrix stands.
+/// Index of the entry (i, j) of a symmetric matrix.
 pub fn entry(i: usize, j: usize) -> usize {
     // the axis that is neither i nor j: z -> xy, x -> yz, y -> zx
     if i == j { i } else { [4, 5, 3][3 - i - j] }
 }
 
 impl AxesTree {
-    /// The same dyadic along other axes, its components named on the way.
+    /// The same dyadic along other axes; its components are named on the way.
     pub fn convert_symmetric(
         &self,
         z: &mut Intermediates,
@@ -196,7 +195,7 @@ impl AxesTree {
         self.convert_graded(z, m, from, to, |_, _, _| Smaller::Neither)
     }
 
-    /// As `convert_symmetric`, with an operation or three more per turn that keep the digits of small
+    /// Like `convert_symmetric`, with one to three more operations per rotation that keep the digits of small
     /// components beside large ones: `smaller` tells which of two is.
     pub fn convert_graded(
         &self,
@@ -213,7 +212,7 @@ impl AxesTree {
     }
 }
 
-/// A dyadic from turned axes to the parent's, or back.
+/// A dyadic from rotated axes to the parent's, or back.
 fn up_symmetric(
     z: &mut Intermediates,
     turn: &Turn,
@@ -234,7 +233,8 @@ fn up_symmetric(
             let cw = z.name(cosine.mul(&w));
             let mut result = m.clone();
             let smaller = smaller(z, jj, kk);
-            // What is small starts from what is: near a multiple of a right angle the rest vanishes.
+            // A small component is computed from small ones: near a multiple of a right angle the other terms
+            // vanish.
             let sv = if smaller == Smaller::Neither {
                 Expr::zero()
             } else {
@@ -269,7 +269,7 @@ impl Default for AxesTree {
     }
 }
 
-/// From turned axes to the parent's.
+/// From rotated axes to the parent's.
 fn up(turn: &Turn, v: &Triple) -> Triple {
     match turn {
         Turn::Simple { axis, sine, cosine, .. } => turned(*axis, sine, cosine, v),
@@ -277,7 +277,7 @@ fn up(turn: &Turn, v: &Triple) -> Triple {
     }
 }
 
-/// From the parent's axes to the turned ones.
+/// From the parent's axes to the rotated ones.
 fn down(turn: &Turn, v: &Triple) -> Triple {
     match turn {
         Turn::Simple { axis, sine, cosine, .. } => turned(*axis, &sine.neg(), cosine, v),
@@ -295,7 +295,7 @@ fn turned(axis: usize, sine: &Expr, cosine: &Expr, v: &Triple) -> Triple {
     result
 }
 
-/// The number of an axis.
+/// The index of an axis.
 pub fn index(axis: Axis) -> usize {
     match axis {
         Axis::X => 0,

@@ -45,8 +45,8 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// The constraints that determine the dependent speeds, as forms in all speeds; an error where the
-    /// components of one repeat each other.
+    /// The constraints that determine the dependent speeds, as forms in all speeds; an error if the
+    /// components of one are dependent.
     fn constraint_forms(&mut self) -> Result<Vec<LinearScalar>, DeriveError> {
         let mut equations = Vec::new();
         let mut repeated = None;

@@ -1,10 +1,10 @@
 //! Converts equations to forms linear in the speeds (left side minus right side) without components that are
 //! identically 0.
 //!
-//! A vector equation may say nothing in some direction: the contact point of a ball that rolls on a plane has
-//! no velocity along the normal, whatever the speeds. Its component along that direction is identically 0,
-//! but along other axes the algebra does not see the dependence. So axes are sought along which the equation
-//! has as few components as are independent.
+//! A vector equation may be trivial in some direction: the contact point of a ball that rolls on a plane has
+//! no velocity along the normal, for all speeds. Its component along that direction is identically 0, but
+//! along other axes the algebra does not recognise the dependence. So the module seeks axes along which the
+//! equation has as few components as are independent.
 
 use std::collections::HashMap;
 
@@ -20,13 +20,13 @@ use hodograph_model::model::mechanism::{
 use hodograph_model::numeric;
 use hodograph_program::program::graph::Input;
 
-/// States at which it is decided whether something is identically 0.
+/// Number of states at which it is decided whether something is identically 0.
 const SAMPLES: u64 = 12;
-/// This number of samples with a value is enough.
+/// This number of samples with a value is sufficient.
 pub(crate) const ENOUGH: usize = 4;
 
 impl Kinematics<'_> {
-    /// Left minus right, as forms: one, or the components that are not identically 0.
+    /// Left side minus right side as forms: one, or the components that are not identically 0.
     pub fn equation_forms(&mut self, sides: &EquationSides) -> Vec<LinearScalar> {
         match sides {
             EquationSides::Scalar(a, b) => {
@@ -40,7 +40,7 @@ impl Kinematics<'_> {
         }
     }
 
-    /// The components of a vector that vanishes, along the first axes on which they are independent.
+    /// The components of a vanishing vector along the first axes on which they are independent.
     fn vector_equation(&mut self, vector: &Vector) -> Vec<LinearScalar> {
         let form = self.linear_vector(vector);
         let first = self.meeting(form.keys().copied(), std::iter::empty());
@@ -76,15 +76,15 @@ impl Kinematics<'_> {
         })
     }
 
-    /// Whether the expression is identically 0, as far as arbitrary states show.
+    /// Whether the expression is identically 0, as far as random states show.
     pub fn vanishes(&mut self, expr: &Expr) -> bool {
         expr.is_zero() || vanishes(&self.z, &mut self.samples, expr)
     }
 
-    /// How many of the forms are independent at arbitrary states; all, where that cannot be seen.
+    /// The number of forms that are independent at random states; all of them if this cannot be decided.
     pub(super) fn rank(&mut self, forms: &[LinearScalar]) -> usize {
         let slots: Vec<usize> = forms.iter().flat_map(|form| form.terms.keys().copied()).collect();
-        // in SI units: those of the model decide nothing
+        // in SI units, so that the units of the model do not matter
         let quantities = self.mechanism.speeds.iter().chain(&self.mechanism.coordinates);
         let sizes: Vec<f64> = quantities.map(|quantity| quantity.factor).collect();
         let size = |slot: usize| sizes.get(slot).copied().unwrap_or(1.0);
@@ -103,8 +103,8 @@ impl Kinematics<'_> {
         ranks.take(ENOUGH).max().unwrap_or(forms.len())
     }
 
-    /// A vector as a form along given axes, by the shortest way: velocities do not pass through the axes of
-    /// bodies that they do not depend on.
+    /// A vector as a form along given axes, by the shortest way: velocities are not converted to axes of
+    /// bodies on which they do not depend.
     fn vector_along(&mut self, vector: &Vector, axes: AxesId) -> LinearVector {
         match vector {
             Vector::Add(terms) => {
@@ -126,7 +126,7 @@ impl Kinematics<'_> {
         }
     }
 
-    /// All axes that a vector has to do with, and those against which they are turned, N's first.
+    /// All axes that occur in a vector, and those relative to which they are rotated; N's first.
     fn axes_of(&mut self, vector: &Vector) -> Vec<AxesId> {
         let form = self.linear_vector(vector);
         let mut found: Vec<AxesId> = form.keys().copied().collect();
@@ -183,9 +183,9 @@ pub(super) fn vanishes(z: &Intermediates, samples: &mut [Sample], expr: &Expr) -
     seen.len() > 1 && seen.iter().all(|&zero| zero)
 }
 
-/// Arbitrary states and parameters of common sizes, the same ones every time. Default values do not enter:
-/// what is 0 with them only is not identically 0, and equations are the same whatever they are. Some
-/// expressions have values in some of the states only.
+/// Random states and parameters of common sizes, always the same. Default values are not used: an expression
+/// that is 0 only with them is not identically 0, and the equations do not depend on them. Some expressions
+/// have values only in some of the states.
 pub(super) fn samples(mechanism: &Mechanism) -> Vec<Sample> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
 }

@@ -55,6 +55,7 @@ pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
     }
     for contact in &mechanism.contacts {
         scan.vector(&contact.normal);
+        contact.tangent.iter().for_each(|tangent| scan.vector(tangent));
         if let Against::Velocity(v) = &contact.against {
             scan.vector(v);
         }

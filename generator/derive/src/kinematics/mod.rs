@@ -31,21 +31,21 @@ use hodograph_program::program::graph::Input;
 use axes::{AxesId, AxesTree};
 use linear_forms::{LinearScalar, LinearVector, Triple};
 
-/// Why a model cannot be derived: a mistake that only the derivation finds.
+/// Why a model cannot be derived: a mistake that only the derivation can find.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeriveError {
     /// its kind
     pub code: Code,
     /// the place in the model
     pub span: Span,
-    /// what is wrong
+    /// the mistake
     pub message: String,
-    /// what to do
+    /// the remedy
     pub help: String,
 }
 
 impl DeriveError {
-    /// As it is reported with the other mistakes of a model.
+    /// The mistake in the form of other mistakes of a model.
     pub fn diagnostic(&self) -> Diagnostic {
         Diagnostic::new(self.code, self.span, self.message.clone()).help(self.help.clone())
     }
@@ -64,9 +64,9 @@ impl std::error::Error for DeriveError {}
 pub struct GuardedValue {
     /// the value
     pub value: Expr,
-    /// what it is compared with
+    /// the scale for comparison
     pub scale: Expr,
-    /// what is wrong when it vanishes
+    /// the error if it vanishes
     pub message: String,
 }
 
@@ -84,7 +84,7 @@ pub struct FrameMotion {
 /// A lever arm: `angular velocity of frame x arm` is part of a velocity.
 #[derive(Clone, Debug)]
 pub struct Arm {
-    /// the frame whose angular velocity counts
+    /// the frame whose angular velocity is multiplied
     pub frame: FrameId,
     /// axes of `arm`
     pub axes: AxesId,
@@ -95,13 +95,13 @@ pub struct Arm {
 /// Velocity of a point: that of `base`, plus the arms' part, plus `relative`.
 #[derive(Clone, Debug)]
 pub struct PointMotion {
-    /// the point it is relative to; `None`: nothing
+    /// the reference point; `None`: none
     pub base: Option<PointId>,
     /// lever arms
     pub arms: Vec<Arm>,
     /// further partial velocities, by axes
     pub relative: Vec<(AxesId, LinearVector)>,
-    /// axes in which the velocity's value is kept
+    /// axes along which the value of the velocity is stored
     pub home: AxesId,
 }
 
@@ -128,25 +128,25 @@ pub struct Kinematics<'m> {
     /// rates of the coordinates as forms: while kinematical equations are set up each rate is an unknown of
     /// its own (slots after those of the speeds), afterwards they are forms in the speeds
     pub rates: Vec<LinearScalar>,
-    /// whether the rates have been found.
+    /// whether the rates have been determined
     pub solved: bool,
-    /// how everything changes with time, speeds held; valid once the rates have been found
+    /// the time derivatives of all symbols at constant speeds; valid once the rates are determined
     pub time: Direction,
-    /// per frame, once the rates have been found
+    /// per frame, once the rates are determined
     pub frames: Vec<FrameMotion>,
-    /// per point, once the rates have been found
+    /// per point, once the rates are determined
     pub points: Vec<PointMotion>,
     /// dependent speeds as forms in independent ones: slot -> form
     pub dependent: BTreeMap<usize, LinearScalar>,
     /// derivatives of the dependent speeds while those of the independent ones are 0
     pub dependent_bias: BTreeMap<usize, Expr>,
-    /// what must not vanish
+    /// values that must not vanish
     pub guards: Vec<GuardedValue>,
-    /// arbitrary states, at which it shows what is identically 0
+    /// random states for deciding what is identically 0
     pub samples: Vec<Sample>,
     partials: BTreeMap<SymbolId, Vec<(usize, Expr)>>,
     definitions: evaluate::Definitions,
-    /// what is being evaluated, for messages about divisors
+    /// the part of the model that is being evaluated, for messages about divisors
     place: String,
     used_axes: Vec<bool>,
     angular_values: BTreeMap<FrameId, Triple>,
@@ -265,7 +265,7 @@ impl<'m> Kinematics<'m> {
         result
     }
 
-    /// How an expression free of speeds changes with time (value of the rate).
+    /// The time derivative of an expression free of speeds (the value of its rate).
     pub fn change(&mut self, expr: &Expr) -> Expr {
         let mut time = std::mem::take(&mut self.time);
         let rate = self.z.differentiate(expr, &mut time);
@@ -273,13 +273,13 @@ impl<'m> Kinematics<'m> {
         rate
     }
 
-    /// How components free of speeds change with time, the axes held.
+    /// The time derivatives of components free of speeds, with constant axes.
     pub fn change_of(&mut self, v: &Triple) -> Triple {
         let rates = std::array::from_fn(|i| self.change(&v[i]));
         linear_forms::name(&mut self.z, rates)
     }
 
-    /// Does some work for a named part of the model; messages about divisors then name that part.
+    /// Runs `work` for a named part of the model; messages about divisors then name that part.
     pub fn within<R>(&mut self, place: String, work: impl FnOnce(&mut Self) -> R) -> R {
         let outer = std::mem::replace(&mut self.place, place);
         let result = work(self);
@@ -287,7 +287,7 @@ impl<'m> Kinematics<'m> {
         result
     }
 
-    /// Notes that a value must not vanish.
+    /// Adds a guard: the value must not vanish.
     pub fn guard(&mut self, value: &Expr, message: impl Into<String>) {
         let message = message.into();
         for factor in factors(value) {
@@ -295,8 +295,8 @@ impl<'m> Kinematics<'m> {
         }
     }
 
-    /// Notes that a determinant must not vanish: `message` says what cannot be found where one of its factors
-    /// does, from the names of the unknowns whose forms it divides.
+    /// Adds guards for the factors of a determinant. `message` describes what cannot be computed if one of
+    /// them vanishes, from the names of the unknowns whose forms it divides.
     pub fn guard_determinant(
         &mut self,
         determinant: &Expr,
@@ -309,7 +309,7 @@ impl<'m> Kinematics<'m> {
             };
             let found: Vec<_> =
                 unknowns.iter().filter(|(_, form)| divided(form)).map(|(name, _)| name.as_str()).collect();
-            // Where a factor is hidden in a name every unknown may be concerned.
+            // If a factor is hidden in a name, any unknown may be concerned.
             let all = || unknowns.iter().map(|(name, _)| name.as_str()).collect();
             let names: Vec<&str> = if found.is_empty() { all() } else { found };
             self.guard_factor(&factor, message(&names.join(", ")));
@@ -338,7 +338,7 @@ impl<'m> Kinematics<'m> {
     }
 }
 
-/// What a value divides by where something is divided by it: its factors.
+/// The factors of a value that is a divisor.
 fn factors(value: &Expr) -> Vec<Expr> {
     match value.view() {
         View::Number(_) => Vec::new(),

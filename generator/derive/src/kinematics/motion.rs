@@ -45,7 +45,8 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// Axes for a stated angular velocity: those in which it is stated, where nothing needs the frame's own.
+    /// Axes for a stated angular velocity: those in which it is stated, if the axes of the frame itself are
+    /// not needed.
     fn stated_home(&self, id: FrameId, home: AxesId, declared: &MixedLinear) -> AxesId {
         match declared.keys().collect::<Vec<_>>()[..] {
             [&axes] if !self.used_axes[id.0] => axes,
@@ -53,15 +54,15 @@ impl Kinematics<'_> {
         }
     }
 
-    /// Every point after the one it starts from.
+    /// The points, each after the one relative to which it is defined.
     pub fn points_in_order(&self) -> Vec<PointId> {
         let mut order: Vec<PointId> = (0..self.mechanism.points.len()).map(PointId).collect();
         order.sort_by_key(|&point| (self.way(point).len(), point));
         order
     }
 
-    /// The nearest frame, going towards N, that turns against its base: the one whose angular velocity this
-    /// frame has.
+    /// The nearest frame towards N that rotates relative to its base, which has the angular velocity of this
+    /// frame.
     pub fn turning(&self, frame: FrameId) -> FrameId {
         let mut at = frame;
         while at != FrameId::N && self.frames[at.0].relative.is_zero() {
@@ -118,9 +119,8 @@ impl Kinematics<'_> {
         PointMotion { base, arms, relative, home }
     }
 
-    /// Axes for the value of a point's velocity: those of the frame that carries it on, where something
-    /// further along turns against that frame; otherwise the ones it comes from, which spares the
-    /// rotation.
+    /// Axes for the value of a point's velocity: those of the frame that carries it, if a later frame rotates
+    /// relative to that frame; otherwise the previous ones, which saves a rotation.
     fn choose_home(
         &self,
         base: Option<PointId>,
@@ -143,7 +143,7 @@ impl Kinematics<'_> {
         home.unwrap_or(AxesTree::N)
     }
 
-    /// Not where the frame turns about an axis that keeps its direction in N and carries no other axes.
+    /// False if the frame rotates about an axis with constant direction in N and carries no other axes.
     fn worth_turning(&self, frame: FrameId) -> bool {
         let axes = self.frames[frame.0].home;
         let carries =
@@ -160,7 +160,7 @@ impl Kinematics<'_> {
         carries || !planar
     }
 
-    /// The frames whose relations add up to a frame's angular velocity, itself first.
+    /// The frames whose relations add up to the angular velocity of a frame, itself first.
     pub fn ancestry(&self, frame: FrameId) -> Vec<FrameId> {
         let mut chain = Vec::new();
         let mut at = frame;

@@ -1,5 +1,5 @@
-//! Partial velocities of points: each frame that turns contributes its partial angular velocities crossed
-//! with the whole arm that it carries.
+//! Partial velocities of points: each rotating frame contributes its partial angular velocities crossed with
+//! the whole arm that it carries.
 //!
 //! Theory: docs/theory.md, section 16.1.
 
@@ -10,15 +10,15 @@ use super::axes::AxesId;
 use super::linear_forms::{self, LinearVector, Triple};
 use hodograph_model::model::mechanism::{FrameId, PointId};
 
-/// Along which axes arms are crossed with partial angular velocities. Which takes fewer operations depends on
-/// the mechanism.
+/// The axes along which arms are crossed with partial angular velocities. Which choice takes fewer operations
+/// depends on the mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// Those of the result: arms and axes of rotation are turned by the matrices between axes, which are
+    /// Those of the result: arms and axes of rotation are converted by matrices between axes, which are
     /// shared by all.
     Result,
-    /// The home axes of the frame, in which an axis of rotation mostly has one component: the products are
-    /// turned on, joint by joint.
+    /// The home axes of the frame, along which an axis of rotation mostly has one component: the products are
+    /// converted joint by joint.
     Home,
 }
 
@@ -47,7 +47,7 @@ impl Kinematics<'_> {
         self.partial_velocities_with(centre, axes, along, carried)
     }
 
-    /// Partial velocities of what stands off a point by the arms that frames carry.
+    /// Partial velocities of a point at arms from another point that frames carry.
     fn partial_velocities_with(
         &mut self,
         point: PointId,
@@ -100,7 +100,7 @@ impl Kinematics<'_> {
         along: Along,
     ) -> LinearVector {
         let mut sum = LinearVector::zero();
-        // Deepest frames first: what a frame carries, its base carries too.
+        // Deepest frames first, since the arm of a frame is carried by its base, too.
         let mut open: Vec<FrameId> = carried.keys().copied().collect();
         while !open.is_empty() {
             let deepest =

@@ -7,7 +7,7 @@ use crate::algebra::Expr;
 use hodograph_model::model::mechanism::{FrameId, Place, PointId};
 
 impl Kinematics<'_> {
-    /// The way from a point back to where it starts: itself first.
+    /// The chain from a point back to its starting point; the point itself first.
     pub(super) fn way(&self, point: PointId) -> Vec<PointId> {
         let mut way = vec![point];
         let mut at = point;
@@ -20,7 +20,7 @@ impl Kinematics<'_> {
         way
     }
 
-    /// Whether the difference of the positions of two points is known.
+    /// Whether the relative position of two points is known.
     pub fn connected(&self, a: PointId, b: PointId) -> bool {
         self.way(a).last() == self.way(b).last()
     }
@@ -32,7 +32,7 @@ impl Kinematics<'_> {
             ahead.pop();
             behind.pop();
         }
-        // A common point on the way need not be the last but one of either.
+        // A common point of both chains need not be next to either end.
         if let Some(i) = ahead.iter().position(|p| behind.contains(p)) {
             let common = ahead[i];
             ahead.truncate(i + 1);

@@ -1,9 +1,10 @@
-//! Emits what the forces of closed contacts follow from, in one pass: rates of the mechanism, and partial velocities,
-//! responses, velocities and free accelerations of the contacts that the caller names.
+//! Emits the computation, in one pass, of the quantities for the forces of closed contacts: rates of the
+//! mechanism, and partial velocities, responses, velocities and free accelerations of the contacts that the
+//! caller names.
 //!
-//! One routine computes the rates and every value that two contacts have in common (kinematics, the factors of the mass
-//! matrix). A routine for each contact goes on from these values. The operations are those of the single methods, and
-//! so are the bits.
+//! One routine computes the rates and every value that two contacts share (kinematics, the factors of the
+//! mass matrix). Then a routine for each contact continues from these values. The operations are those of the
+//! single methods, and so are the bits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,16 +18,16 @@ use super::super::values::local;
 use hodograph_program::program::operation::{Operation, Stage, Value};
 use hodograph_program::program::{ContactQuantity, Guard, Quantity};
 
-/// What is asked of the mechanism.
-const TOGETHER: [Quantity; 2] = [Quantity::CoordinateRates, Quantity::Accelerations];
-/// What is asked of each contact, in the order of the slices of its routine.
-const OF_EACH: [ContactQuantity; 4] = [
+/// The quantities of the whole mechanism.
+const OF_MECHANISM: [Quantity; 2] = [Quantity::CoordinateRates, Quantity::Accelerations];
+/// The quantities of each contact, in the order of the slices of its routine.
+const OF_CONTACT: [ContactQuantity; 4] = [
     ContactQuantity::PartialVelocities,
     ContactQuantity::Response,
     ContactQuantity::Velocity,
     ContactQuantity::FreeAcceleration,
 ];
-/// These slices, and what an error calls them.
+/// The names of these slices, and their descriptions in errors.
 const SLICES: [(&str, &str); 4] = [
     ("partial_velocities", "the partial velocities"),
     ("response", "the response"),
@@ -34,25 +35,27 @@ const SLICES: [(&str, &str); 4] = [
     ("free_acceleration", "the free acceleration"),
 ];
 
-/// What a routine computes: values in their order, what must not vanish, results.
-struct Part<'p> {
+/// The work of a routine: values in order, guards, results.
+pub(super) struct Part<'p> {
     order: Vec<Value>,
     guards: Vec<&'p Guard>,
     results: Vec<Value>,
 }
 
 impl Emitter<'_> {
-    /// The method of the trait and its routines; nothing where the program lacks what they need.
+    /// The method of the trait and its routines; `None` if the program lacks a quantity that they need.
     pub(super) fn closed_in_one_pass(&self) -> Option<(TokenStream, TokenStream)> {
         let has = |quantity| self.program.output(quantity).is_some_and(|output| !output.values.is_empty());
         let known: Vec<usize> = (0..self.mechanism.contacts.len())
-            .filter(|&contact| OF_EACH.into_iter().all(|of| self.contact_output(contact, of).is_some()))
+            .filter(|&contact| OF_CONTACT.into_iter().all(|of| self.contact_output(contact, of).is_some()))
             .collect();
-        // One contact has little in common with others: the single methods do, and the module stays shorter.
-        if known.len() < 2 || !TOGETHER.into_iter().all(has) {
+        // For a single contact the single methods suffice, and the module stays shorter.
+        if known.len() < 2 || !OF_MECHANISM.into_iter().all(has) {
             return None;
         }
-        let (together, parts) = self.parts_of_contacts(&known);
+        let each =
+            known.iter().map(|&contact| OF_CONTACT.map(|of| Quantity::Contact(contact as u32, of)).to_vec());
+        let (together, parts) = self.parts_of_contacts(&OF_MECHANISM, &each.collect::<Vec<_>>());
         let shared = self.shared(&together, &parts);
         let arguments = self.arguments_in_one_pass(&known);
         let mut routines = self.routine_together(arguments, &together, &shared);
@@ -63,13 +66,17 @@ impl Emitter<'_> {
     }
 
     fn arguments_in_one_pass(&self, known: &[usize]) -> Arguments {
-        let each = |&contact: &usize| OF_EACH.map(|of| Quantity::Contact(contact as u32, of));
-        let quantities: Vec<Quantity> = TOGETHER.into_iter().chain(known.iter().flat_map(each)).collect();
+        let each = |&contact: &usize| OF_CONTACT.map(|of| Quantity::Contact(contact as u32, of));
+        let quantities: Vec<Quantity> = OF_MECHANISM.into_iter().chain(known.iter().flat_map(each)).collect();
         self.arguments(&quantities)
     }
 
-    /// What is computed for all contacts, and then for each of them.
-    fn parts_of_contacts(&self, known: &[usize]) -> (Part<'_>, Vec<Part<'_>>) {
+    /// The work for quantities of the mechanism and for all contacts, and then for each of these.
+    pub(super) fn parts_of_contacts(
+        &self,
+        of_mechanism: &[Quantity],
+        of_each: &[Vec<Quantity>],
+    ) -> (Part<'_>, Vec<Part<'_>>) {
         let late = |guard: &&Guard| self.guard_stage(guard) > Stage::Parameter;
         let part = |quantities: &[Quantity]| {
             let slice = self.program.slice(quantities);
@@ -79,11 +86,8 @@ impl Emitter<'_> {
             let order = slice.order.iter().copied().filter(|value| needed.contains(value)).collect();
             Part { order, guards: slice.guards.into_iter().filter(late).collect(), results }
         };
-        let mut together = part(&TOGETHER);
-        let mut parts: Vec<Part<'_>> = known
-            .iter()
-            .map(|&contact| part(&OF_EACH.map(|of| Quantity::Contact(contact as u32, of))))
-            .collect();
+        let mut together = part(of_mechanism);
+        let mut parts: Vec<Part<'_>> = of_each.iter().map(|quantities| part(quantities)).collect();
         let mut uses: BTreeMap<Value, usize> = together.order.iter().map(|&value| (value, 2)).collect();
         for &value in parts.iter().flat_map(|part| &part.order).filter(|&&value| self.is_work(value)) {
             *uses.entry(value).or_default() += 1;
@@ -91,7 +95,7 @@ impl Emitter<'_> {
         let is_shared = |value: Value| uses.get(&value).is_some_and(|&count| count > 1);
         let mut common: BTreeSet<Value> =
             uses.keys().copied().filter(|&value| self.is_work(value) && is_shared(value)).collect();
-        // A sine or cosine stands where the pair is that it is taken from.
+        // A sine or cosine is computed in the same routine as its pair.
         for &value in parts.iter().flat_map(|part| &part.order) {
             if let Operation::Sine(pair) | Operation::Cosine(pair) = self.program.operation(value)
                 && common.contains(&pair)
@@ -116,22 +120,26 @@ impl Emitter<'_> {
         (together, parts)
     }
 
-    /// The values that routines of contacts take from the routine for all of them.
-    fn shared(&self, together: &Part<'_>, parts: &[Part<'_>]) -> Vec<Value> {
+    /// The values of the common routine that the routines of contacts use.
+    pub(super) fn shared(&self, together: &Part<'_>, parts: &[Part<'_>]) -> Vec<Value> {
         let computed: BTreeSet<Value> =
             together.order.iter().copied().filter(|&value| self.is_work(value)).collect();
         let mut shared = BTreeSet::new();
         for part in parts {
-            let operands = part.order.iter().flat_map(|&value| self.program.operation(value).operands());
-            let checked = part.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
-            let taken = operands.chain(checked).chain(part.results.iter().copied());
-            shared.extend(taken.filter(|value| computed.contains(value)));
+            shared.extend(self.taken(part).into_iter().filter(|value| computed.contains(value)));
         }
         shared.into_iter().collect()
     }
 
-    /// The statements of a part, its checks, and the error of a result that is not finite.
-    fn body_of_part(&self, part: &Part<'_>, also: &[Value]) -> TokenStream {
+    /// The values that a part computes from, checks or returns.
+    pub(super) fn taken(&self, part: &Part<'_>) -> BTreeSet<Value> {
+        let operands = part.order.iter().flat_map(|&value| self.program.operation(value).operands());
+        let checked = part.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
+        operands.chain(checked).chain(part.results.iter().copied()).collect()
+    }
+
+    /// The statements of a part, its guards, and the error if a result is not finite.
+    pub(super) fn body_of_part(&self, part: &Part<'_>, also: &[Value]) -> TokenStream {
         let krate = self.krate;
         let checked = part.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
         let results: BTreeSet<Value> = part.results.iter().copied().collect();
@@ -193,17 +201,10 @@ impl Emitter<'_> {
         let name = ident_of(contact);
         let signature = self.signature(arguments);
         let count = Literal::usize_unsuffixed(shared.len());
-        let operands = part.order.iter().flat_map(|&value| self.program.operation(value).operands());
-        let checked = part.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
-        let taken: BTreeSet<Value> = operands.chain(checked).chain(part.results.iter().copied()).collect();
-        let fetched =
-            shared.iter().enumerate().filter(|(_, value)| taken.contains(value)).map(|(at, &value)| {
-                let (at, name) = (Literal::usize_unsuffixed(at), local(value));
-                quote!(let #name = shared[#at];)
-            });
+        let fetched = self.fetched(part, shared);
         let body = self.body_of_part(part, &[]);
         let mut results = &part.results[..];
-        let written = OF_EACH.into_iter().zip(SLICES).map(|(of, (slice, what))| {
+        let written = OF_CONTACT.into_iter().zip(SLICES).map(|(of, (slice, what))| {
             let count = self.contact_output(contact, of).map_or(0, |output| output.values.len());
             let (these, rest) = results.split_at(count);
             results = rest;
@@ -217,7 +218,7 @@ impl Emitter<'_> {
                 shared: &[T; #count],
                 #(#slices: &mut [T],)*
             ) -> ::core::result::Result<(), #krate::StateError> {
-                #(#fetched)*
+                #fetched
                 #body
                 #(#written)*
                 ::core::result::Result::Ok(())

@@ -33,8 +33,8 @@ impl Emitter<'_> {
         })
     }
 
-    /// The implementation; without contacts there is none of any number.
-    pub(super) fn contacts_trait(&self, in_one_pass: Option<TokenStream>) -> TokenStream {
+    /// The implementation of the trait; a mechanism without contacts refuses every index.
+    pub(super) fn contacts_trait(&self, in_one_pass: TokenStream) -> TokenStream {
         let (krate, name) = (self.krate, &self.name);
         let vector = quote!(#krate::nalgebra::Vector3<T>);
         let state =
@@ -57,7 +57,7 @@ impl Emitter<'_> {
         let mode = self.closed_contacts("contact_mode", "mode of this contact", &quote!());
         let force = self.closed_contacts("contact_force", "force of this contact", &quote!(mode,));
         let laws = self.stated_laws();
-        let turning = self.turning();
+        let relative_rotation = self.relative_rotation();
         let outcome =
             quote!(::core::result::Result<#krate::ContactOutcome<T>, #krate::ClosedContactError<T>>);
         quote! {
@@ -157,12 +157,12 @@ impl Emitter<'_> {
                 }
                 #in_one_pass
                 #laws
-                #turning
+                #relative_rotation
             }
         }
     }
 
-    /// What the model states of surfaces beyond mu, e and law, if it states any.
+    /// The laws beyond mu, e and law that the model states, if it states any.
     fn stated_laws(&self) -> Option<TokenStream> {
         let krate = self.krate;
         let laws: Vec<_> = self.mechanism.contacts.iter().map(|contact| &contact.law).collect();
@@ -202,8 +202,8 @@ impl Emitter<'_> {
         })
     }
 
-    /// The relative rotation of the bodies in contact, if the model asks for one.
-    fn turning(&self) -> Option<TokenStream> {
+    /// The relative rotation of the bodies in contact, if the model requires it.
+    fn relative_rotation(&self) -> Option<TokenStream> {
         let has = |contact| self.contact_output(contact, ContactQuantity::AngularVelocity).is_some();
         if !(0..self.mechanism.contacts.len()).any(has) {
             return None;
@@ -255,11 +255,19 @@ impl Emitter<'_> {
         self.by_number("contact", "Contact", arms.collect())
     }
 
-    /// What the method `prefix_<contact>` answers, where the program has this quantity.
+    /// The result of the method `prefix_<contact>`, if the program has this quantity.
     fn contact_values(&self, quantity: ContactQuantity, prefix: &str, what: &str) -> TokenStream {
         self.by_contact(|contact| {
             if self.contact_output(contact, quantity).is_none() {
                 return self.undefined(what);
+            }
+            if self.is_feature(contact) {
+                let feature = quote!(Self::feature(self, contact, state)?);
+                return match prefix {
+                    "contact_state" => quote!(::core::result::Result::Ok(#feature.state())),
+                    "contact_velocity" => quote!(Self::moving(self, contact, state)),
+                    _ => quote!(::core::result::Result::Ok(#feature.free_acceleration)),
+                };
             }
             let quantities = match prefix {
                 "contact_state" => self.contact_state_quantities(contact),
@@ -294,7 +302,7 @@ impl Emitter<'_> {
         })
     }
 
-    /// A length that not all contacts have.
+    /// A length that only some contacts have.
     fn lengths(&self, quantity: ContactQuantity) -> TokenStream {
         self.by_contact(|contact| {
             if self.contact_output(contact, quantity).is_none() {
@@ -303,19 +311,46 @@ impl Emitter<'_> {
                     ::core::result::Result::Ok(::core::option::Option::None)
                 };
             }
+            if self.is_feature(contact) {
+                let which = ident(if quantity == ContactQuantity::Validity { "validity" } else { "gap" });
+                return quote!(::core::result::Result::Ok(Self::near(self, contact, state)?.#which));
+            }
             let (unpack, call) = self.own(Quantity::Contact(contact as u32, quantity));
             quote!(#unpack ::core::result::Result::map(#call, ::core::option::Option::Some))
         })
     }
 
     fn contact_matrix(&self, quantity: ContactQuantity) -> TokenStream {
-        self.by_contact(|contact| self.written(Quantity::Contact(contact as u32, quantity)))
+        self.by_contact(|contact| {
+            if self.is_feature(contact) {
+                let krate = self.krate;
+                let (slice, what) = Quantity::Contact(contact as u32, quantity).description().slice;
+                let (field, slice) = (ident(slice), ident(slice));
+                return quote! {
+                    let feature = Self::feature(self, contact, state)?;
+                    #krate::generated::check_length(#slice, feature.#field.len(), #what)?;
+                    #slice.copy_from_slice(&feature.#field);
+                    ::core::result::Result::Ok(())
+                };
+            }
+            self.written(Quantity::Contact(contact as u32, quantity))
+        })
     }
 
     fn collisions(&self, prefix: &str, what: &str) -> TokenStream {
         let krate = self.krate;
         let size = Literal::usize_unsuffixed(self.speeds.len());
         self.by_contact(|contact| {
+            if self.is_feature(contact) {
+                let resolve = match prefix {
+                    "collide" => quote!(resolve(known, surface)),
+                    _ => quote!(resolve_without_collision(known, surface)),
+                };
+                return quote! {
+                    let feature = Self::feature(self, contact, state)?;
+                    feature.struck(state, speeds, |known| #krate::generated::#resolve)
+                };
+            }
             if !self.collides(contact) {
                 return self.undefined(what);
             }
@@ -331,11 +366,23 @@ impl Emitter<'_> {
         })
     }
 
-    /// `contact_mode` or `contact_force`, which takes the mode before the surface.
+    /// `contact_mode` or `contact_force`; the latter takes the mode before the surface.
     fn closed_contacts(&self, prefix: &str, what: &str, mode: &TokenStream) -> TokenStream {
         let krate = self.krate;
         let size = Literal::usize_unsuffixed(self.speeds.len());
         self.by_contact(|contact| {
+            if self.is_feature(contact) {
+                let decide = match prefix {
+                    "contact_mode" => quote!(closed_contact(known, free, noise, surface.mu)),
+                    _ => quote!(kept_contact(mode, known, free, surface.mu)),
+                };
+                let noise = if prefix == "contact_mode" { quote!(noise) } else { quote!(_) };
+                return quote! {
+                    let feature = Self::feature(self, contact, state)?;
+                    #krate::Mechanism::accelerations(self, state, accelerations)?;
+                    feature.touching(state, accelerations, |known, free, #noise| #krate::generated::#decide)
+                };
+            }
             if !self.closes(contact) {
                 return self.undefined(what);
             }

@@ -1,4 +1,4 @@
-//! Names, units and numbers of a mechanism, its parameters and its initial state, for the trait `Mechanism`.
+//! Names, units and counts of a mechanism, its parameters and its initial state, for the trait `Mechanism`.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -53,8 +53,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// Names and numbers.
-    pub(super) fn told(&self) -> TokenStream {
+    /// Names and counts.
+    pub(super) fn names_and_counts(&self) -> TokenStream {
         let krate = self.krate;
         quote! {
             fn name(&self) -> &str {

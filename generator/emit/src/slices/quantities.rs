@@ -1,5 +1,5 @@
 //! Quantities of the whole mechanism for the trait `Mechanism`: equations of motion, energies, configuration
-//! equations, and those that are offered by name.
+//! equations, and the quantities that are offered by name.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -41,7 +41,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The method that answers an energy. Every mechanism has kinetic energy; others it may lack.
+    /// The method that returns an energy. Every mechanism has kinetic energy, but some lack potential energy.
     fn by_number_alone(&self, quantity: Quantity) -> TokenStream {
         let krate = self.krate;
         let method = ident(quantity.description().word);
@@ -100,7 +100,7 @@ impl Emitter<'_> {
         Quantity::named().filter(has).collect()
     }
 
-    /// The method of the quantities that are offered by name; a mechanism without any has the trait's own.
+    /// The method for the quantities that are offered by name; without any, the default of the trait is used.
     pub(super) fn named_by_slices(&self) -> Option<TokenStream> {
         let krate = self.krate;
         let named = self.named_quantities();

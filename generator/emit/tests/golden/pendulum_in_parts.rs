@@ -433,11 +433,41 @@ pub mod pendulum_in_parts {
             q: &Coordinates<T>,
             u: &Speeds<T>,
         ) -> ::core::result::Result<Coordinates<T>, ::hodograph::StateError> {
+            self.put_coordinate_rates(q, u, ::core::result::Result::Ok)
+        }
+        /// [`Self::coordinate_rates`] in place: the answer is stored in `out` without a copy. After an error `out` may hold anything.
+        #[inline]
+        pub fn coordinate_rates_into(
+            &self,
+            q: &Coordinates<T>,
+            u: &Speeds<T>,
+            out: &mut Coordinates<T>,
+        ) -> ::core::result::Result<(), ::hodograph::StateError> {
+            self.put_coordinate_rates(
+                q,
+                u,
+                |value| {
+                    *out = value;
+                    ::core::result::Result::Ok(())
+                },
+            )
+        }
+        #[inline]
+        fn put_coordinate_rates<R: ::core::marker::Copy>(
+            &self,
+            q: &Coordinates<T>,
+            u: &Speeds<T>,
+            put: impl ::core::ops::FnOnce(
+                Coordinates<T>,
+            ) -> ::core::result::Result<R, ::hodograph::StateError>,
+        ) -> ::core::result::Result<R, ::hodograph::StateError> {
             let v4 = u.u1;
             if !::hodograph::generated::all_finite([v4]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
-            ::core::result::Result::Ok(Coordinates { q1: v4 })
+            put(Coordinates { q1: v4 })
         }
         /// Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.
         #[inline]
@@ -448,8 +478,33 @@ pub mod pendulum_in_parts {
             ::hodograph::nalgebra::SMatrix<T, 1, 1>,
             ::hodograph::StateError,
         > {
+            self.put_mass_matrix(q, ::core::result::Result::Ok)
+        }
+        /// [`Self::mass_matrix`] in place: the answer is stored in `out` without a copy. After an error `out` may hold anything.
+        #[inline]
+        pub fn mass_matrix_into(
+            &self,
+            q: &Coordinates<T>,
+            out: &mut ::hodograph::nalgebra::SMatrix<T, 1, 1>,
+        ) -> ::core::result::Result<(), ::hodograph::StateError> {
+            self.put_mass_matrix(
+                q,
+                |value| {
+                    *out = value;
+                    ::core::result::Result::Ok(())
+                },
+            )
+        }
+        #[inline]
+        fn put_mass_matrix<R: ::core::marker::Copy>(
+            &self,
+            q: &Coordinates<T>,
+            put: impl ::core::ops::FnOnce(
+                ::hodograph::nalgebra::SMatrix<T, 1, 1>,
+            ) -> ::core::result::Result<R, ::hodograph::StateError>,
+        ) -> ::core::result::Result<R, ::hodograph::StateError> {
             let v12 = self.hoisted[0];
-            ::core::result::Result::Ok(::hodograph::nalgebra::SMatrix::from([[v12]]))
+            put(::hodograph::nalgebra::SMatrix::from([[v12]]))
         }
         /// Forcing, the right side of M u' = forcing: loads, and inertia terms without u'. An entry times its speed is in W.
         #[inline]
@@ -462,6 +517,37 @@ pub mod pendulum_in_parts {
             ::hodograph::nalgebra::SMatrix<T, 1, 1>,
             ::hodograph::StateError,
         > {
+            self.put_forcing(q, u, inputs, ::core::result::Result::Ok)
+        }
+        /// [`Self::forcing`] in place: the answer is stored in `out` without a copy. After an error `out` may hold anything.
+        #[inline]
+        pub fn forcing_into(
+            &self,
+            q: &Coordinates<T>,
+            u: &Speeds<T>,
+            inputs: &Inputs<T>,
+            out: &mut ::hodograph::nalgebra::SMatrix<T, 1, 1>,
+        ) -> ::core::result::Result<(), ::hodograph::StateError> {
+            self.put_forcing(
+                q,
+                u,
+                inputs,
+                |value| {
+                    *out = value;
+                    ::core::result::Result::Ok(())
+                },
+            )
+        }
+        #[inline]
+        fn put_forcing<R: ::core::marker::Copy>(
+            &self,
+            q: &Coordinates<T>,
+            u: &Speeds<T>,
+            inputs: &Inputs<T>,
+            put: impl ::core::ops::FnOnce(
+                ::hodograph::nalgebra::SMatrix<T, 1, 1>,
+            ) -> ::core::result::Result<R, ::hodograph::StateError>,
+        ) -> ::core::result::Result<R, ::hodograph::StateError> {
             let v3 = q.q1;
             let v14 = self.hoisted[1];
             let v5 = inputs.tau;
@@ -501,9 +587,11 @@ pub mod pendulum_in_parts {
             part_2(&[v14, v5], &of_part_1, &mut of_part_2);
             let v15 = of_part_2[0];
             if !::hodograph::generated::all_finite([v15]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
-            ::core::result::Result::Ok(::hodograph::nalgebra::SMatrix::from([[v15]]))
+            put(::hodograph::nalgebra::SMatrix::from([[v15]]))
         }
         /// Rates u' of the independent speeds without contact forces, in the units of the speeds per second.
         #[inline]
@@ -513,6 +601,37 @@ pub mod pendulum_in_parts {
             u: &Speeds<T>,
             inputs: &Inputs<T>,
         ) -> ::core::result::Result<Speeds<T>, ::hodograph::StateError> {
+            self.put_accelerations(q, u, inputs, ::core::result::Result::Ok)
+        }
+        /// [`Self::accelerations`] in place: the answer is stored in `out` without a copy. After an error `out` may hold anything.
+        #[inline]
+        pub fn accelerations_into(
+            &self,
+            q: &Coordinates<T>,
+            u: &Speeds<T>,
+            inputs: &Inputs<T>,
+            out: &mut Speeds<T>,
+        ) -> ::core::result::Result<(), ::hodograph::StateError> {
+            self.put_accelerations(
+                q,
+                u,
+                inputs,
+                |value| {
+                    *out = value;
+                    ::core::result::Result::Ok(())
+                },
+            )
+        }
+        #[inline]
+        fn put_accelerations<R: ::core::marker::Copy>(
+            &self,
+            q: &Coordinates<T>,
+            u: &Speeds<T>,
+            inputs: &Inputs<T>,
+            put: impl ::core::ops::FnOnce(
+                Speeds<T>,
+            ) -> ::core::result::Result<R, ::hodograph::StateError>,
+        ) -> ::core::result::Result<R, ::hodograph::StateError> {
             let v3 = q.q1;
             let v14 = self.hoisted[1];
             let v5 = inputs.tau;
@@ -566,9 +685,11 @@ pub mod pendulum_in_parts {
             part_3(&[v16], &of_part_2, &mut of_part_3);
             let v17 = of_part_3[0];
             if !::hodograph::generated::all_finite([v17]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
-            ::core::result::Result::Ok(Speeds { u1: v17 })
+            put(Speeds { u1: v17 })
         }
         /// Kinetic energy of the motion relative to N, in J.
         #[inline]
@@ -603,7 +724,9 @@ pub mod pendulum_in_parts {
             part_1(&[v4], &of_part_0, &mut of_part_1);
             let v22 = of_part_1[0];
             if !::hodograph::generated::all_finite([v22]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
             ::core::result::Result::Ok(v22)
         }
@@ -693,7 +816,9 @@ pub mod pendulum_in_parts {
             let v23 = of_part_2[0];
             let v37 = of_part_5[0];
             if !::hodograph::generated::all_finite([v23, v37]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
             ::core::result::Result::Ok(
                 ::hodograph::nalgebra::SMatrix::from([[v23, v37, v9]]),
@@ -798,7 +923,9 @@ pub mod pendulum_in_parts {
             let v26 = of_part_6[0];
             let v39 = of_part_4[0];
             if !::hodograph::generated::all_finite([v26, v39]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
             ::core::result::Result::Ok(
                 ::hodograph::nalgebra::SMatrix::from([[v39, v26, v9]]),
@@ -813,6 +940,31 @@ pub mod pendulum_in_parts {
             ::hodograph::nalgebra::SMatrix<T, 1, 3>,
             ::hodograph::StateError,
         > {
+            self.put_response_tip_wall(q, ::core::result::Result::Ok)
+        }
+        /// [`Self::response_tip_wall`] in place: the answer is stored in `out` without a copy. After an error `out` may hold anything.
+        #[inline]
+        pub fn response_tip_wall_into(
+            &self,
+            q: &Coordinates<T>,
+            out: &mut ::hodograph::nalgebra::SMatrix<T, 1, 3>,
+        ) -> ::core::result::Result<(), ::hodograph::StateError> {
+            self.put_response_tip_wall(
+                q,
+                |value| {
+                    *out = value;
+                    ::core::result::Result::Ok(())
+                },
+            )
+        }
+        #[inline]
+        fn put_response_tip_wall<R: ::core::marker::Copy>(
+            &self,
+            q: &Coordinates<T>,
+            put: impl ::core::ops::FnOnce(
+                ::hodograph::nalgebra::SMatrix<T, 1, 3>,
+            ) -> ::core::result::Result<R, ::hodograph::StateError>,
+        ) -> ::core::result::Result<R, ::hodograph::StateError> {
             let v3 = q.q1;
             let v34 = self.hoisted[5];
             let v9 = ::hodograph::generated::number::<T>(0f64);
@@ -890,11 +1042,11 @@ pub mod pendulum_in_parts {
             let v36 = of_part_5[0];
             let v41 = of_part_3[0];
             if !::hodograph::generated::all_finite([v36, v41]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
-            ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v41], [v36], [v9]]),
-            )
+            put(::hodograph::nalgebra::SMatrix::from([[v41], [v36], [v9]]))
         }
         /// Contact basis (columns: normal, first, second) along N.x, N.y, N.z at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -1045,7 +1197,9 @@ pub mod pendulum_in_parts {
             let v33 = of_part_8[0];
             let v40 = of_part_7[0];
             if !::hodograph::generated::all_finite([v30, v33, v40]) {
-                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
             }
             ::core::result::Result::Ok(
                 ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
@@ -1235,18 +1389,19 @@ pub mod pendulum_in_parts {
             let v33 = of_part_12[0];
             let v39 = of_part_4[0];
             let v40 = of_part_11[0];
-            let mut answer = ::core::result::Result::Ok(::hodograph::ContactState {
+            if !::hodograph::generated::all_finite([v26, v30, v33, v39, v40]) {
+                return ::core::result::Result::Err(
+                    ::hodograph::StateError::NotFinite.into(),
+                );
+            }
+            ::core::result::Result::Ok(::hodograph::ContactState {
                 gap: ::core::option::Option::None,
                 normal: ::hodograph::nalgebra::Vector3::new(v38, v9, v9),
                 first: ::hodograph::nalgebra::Vector3::new(v9, v10, v9),
                 second: ::hodograph::nalgebra::Vector3::new(v9, v9, v38),
                 velocity: ::hodograph::nalgebra::Vector3::new(v39, v26, v9),
                 reduced: ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
-            });
-            if !::hodograph::generated::all_finite([v26, v30, v33, v39, v40]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
-            }
-            answer
+            })
         }
         /// Solves the collision at `TipWall` (the bob strikes the wall).
         ///
@@ -1687,10 +1842,14 @@ pub mod pendulum_in_parts {
             > as ::core::convert::From<
                 [T; 1],
             >>::from(::hodograph::generated::array::<T, 1>(state.speeds, "speeds")?);
-            ::hodograph::generated::write_array::<
-                T,
-                1,
-            >(rates, Self::coordinate_rates(self, q, u)?, "the rates of the coordinates")
+            self.put_coordinate_rates(
+                q,
+                u,
+                |value| ::hodograph::generated::write_array::<
+                    T,
+                    1,
+                >(rates, value, "the rates of the coordinates"),
+            )
         }
         fn accelerations(
             &self,
@@ -1715,13 +1874,14 @@ pub mod pendulum_in_parts {
             > as ::core::convert::From<
                 [T; 1],
             >>::from(::hodograph::generated::array::<T, 1>(state.inputs, "inputs")?);
-            ::hodograph::generated::write_array::<
-                T,
-                1,
-            >(
-                accelerations,
-                Self::accelerations(self, q, u, inputs)?,
-                "the accelerations",
+            self.put_accelerations(
+                q,
+                u,
+                inputs,
+                |value| ::hodograph::generated::write_array::<
+                    T,
+                    1,
+                >(accelerations, value, "the accelerations"),
             )
         }
         fn dependent_speeds(
@@ -1757,11 +1917,14 @@ pub mod pendulum_in_parts {
             >>::from(
                 ::hodograph::generated::array::<T, 1>(state.coordinates, "coordinates")?,
             );
-            ::hodograph::generated::write_rows::<
-                T,
-                1,
-                1,
-            >(matrix, &Self::mass_matrix(self, q)?, "the mass matrix")
+            self.put_mass_matrix(
+                q,
+                |value| ::hodograph::generated::write_rows::<
+                    T,
+                    1,
+                    1,
+                >(matrix, &value, "the mass matrix"),
+            )
         }
         fn forcing(
             &self,
@@ -1786,11 +1949,16 @@ pub mod pendulum_in_parts {
             > as ::core::convert::From<
                 [T; 1],
             >>::from(::hodograph::generated::array::<T, 1>(state.inputs, "inputs")?);
-            ::hodograph::generated::write_rows::<
-                T,
-                1,
-                1,
-            >(forcing, &Self::forcing(self, q, u, inputs)?, "the forcing")
+            self.put_forcing(
+                q,
+                u,
+                inputs,
+                |value| ::hodograph::generated::write_rows::<
+                    T,
+                    1,
+                    1,
+                >(forcing, &value, "the forcing"),
+            )
         }
         fn inverse_dynamics(
             &self,
@@ -2198,11 +2366,14 @@ pub mod pendulum_in_parts {
                             1,
                         >(state.coordinates, "coordinates")?,
                     );
-                    ::hodograph::generated::write_rows::<
-                        T,
-                        1,
-                        3,
-                    >(response, &Self::response_tip_wall(self, q)?, "the response")
+                    self.put_response_tip_wall(
+                        q,
+                        |value| ::hodograph::generated::write_rows::<
+                            T,
+                            1,
+                            3,
+                        >(response, &value, "the response"),
+                    )
                 }
                 index => {
                     ::core::result::Result::Err(

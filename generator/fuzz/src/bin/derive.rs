@@ -1,4 +1,4 @@
-//! `cargo run --bin derive --features derive -- [COUNT] [SEED]` in `generator/fuzz`: mutated models that the
+//! `cargo run -p hodograph-fuzz --bin derive --features derive -- [COUNT] [SEED]`: mutated models that the
 //! front end accepts are derived and lowered. A derivation must end with a result or an error; a panic is a
 //! failure, and its seed is printed.
 

@@ -1,4 +1,4 @@
-//! `cargo run --release --bin seeded -- [COUNT] [SEED]` in `generator/fuzz`: mutated models, token soups and
+//! `cargo run --profile fuzz -p hodograph-fuzz --bin seeded -- [COUNT] [SEED]`: mutated models, token soups and
 //! arbitrary bytes, the same for the same seed, on all cores. A failure names the seed of its input, which
 //! `-- 1 SEED` prints and repeats.
 
@@ -21,7 +21,7 @@ fn input(good: &[Vec<u8>], bad: &[Vec<u8>], seed: u64) -> Vec<u8> {
     let mut random = Random::new(seed);
     match random.below(10) {
         0 => soup(&mut random),
-        1 => (0..random.below(300)).map(|_| random.next() as u8).collect(),
+        1 => (0..random.below(300)).map(|_| random.bits() as u8).collect(),
         2 | 3 => mutate(bad, &mut random),
         _ => mutate(good, &mut random),
     }
@@ -65,7 +65,7 @@ fn main() {
                     if slowest.fetch_max(micros, Ordering::Relaxed) < micros && micros > 2_000_000 {
                         println!("seed {seed} took {} ms", micros / 1000);
                     }
-                    if seed % 16 == 0 {
+                    if seed.is_multiple_of(16) {
                         let source = hodograph_generator::source::Source::bytes("x", bytes);
                         let ok = hodograph_generator::check::check(&source).mechanism.is_some();
                         accepted.fetch_add(u64::from(ok), Ordering::Relaxed);

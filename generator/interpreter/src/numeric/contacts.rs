@@ -41,16 +41,7 @@ impl NumericMechanism {
         write(speeds, state.speeds, "the speeds after the collision")?;
         let hit = resolve(&known.contact)?;
         add(speeds, &known.response, &hit.impulse);
-        Ok(CollisionOutcome {
-            normal: known.contact.normal,
-            tangent: hit.tangent,
-            binormal: hit.binormal,
-            approach: hit.approach,
-            reduced: hit.reduced,
-            impulse_on_point: hit.impulse_on_point,
-            energy_change: hit.energy_change,
-            impact: hit.impact,
-        })
+        Ok(hit.outcome(known.contact.normal))
     }
 
     fn touching(
@@ -85,17 +76,17 @@ impl Contacts for NumericMechanism {
 
     fn gap(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
         self.exists(ComponentKind::Contact, contact)?;
-        let Some(gap) = &self.model().contacts[contact].gap else { return Ok(None) };
+        let Some(gap) = &self.model.contacts[contact].gap else { return Ok(None) };
         let gap = self.still(state, |values| Ok(values.scalar(gap, Level::Motion)?.re))?;
         finite([gap]).map(|[gap]| Some(gap))
     }
 
     fn surface(&self, contact: usize) -> Option<Surface<f64>> {
-        stated_surface(self.model(), contact)
+        stated_surface(&self.model, contact)
     }
 
     fn stated_law(&self, contact: usize) -> StatedLaw<'_> {
-        stated_law(self.model(), contact)
+        stated_law(&self.model, contact)
     }
 
     fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {

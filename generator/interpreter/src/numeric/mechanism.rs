@@ -15,22 +15,22 @@ impl NumericMechanism {
     fn partials(&self, point: usize, state: &State<'_>) -> Result<Vec<[f64; 3]>, StateError> {
         self.exists(ComponentKind::Point, point)?;
         let numbers = self.numbers(state)?;
-        let views = Views::at(self.model(), &numbers).map_err(state_error)?;
+        let views = Views::at(&self.model, &numbers).map_err(state_error)?;
         views.partials(|values| values.velocity(PointId(point))).map_err(state_error)
     }
 }
 
 impl Mechanism for NumericMechanism {
     fn name(&self) -> &str {
-        &self.model().name
+        &self.model.name
     }
 
     fn count(&self, kind: ComponentKind) -> usize {
-        description::count(self.model(), kind)
+        description::count(&self.model, kind)
     }
 
     fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
-        description::component(self.model(), kind, index)
+        description::component(&self.model, kind, index)
     }
 
     fn dependent_coordinate(&self, index: usize) -> Option<usize> {
@@ -38,13 +38,13 @@ impl Mechanism for NumericMechanism {
     }
 
     fn parameter_values(&self, values: &mut [f64]) -> Result<(), StateError> {
-        write(values, &parameters::run_time(self.model(), self.all_parameters()), "parameters")
+        write(values, &parameters::run_time(&self.model, self.all_parameters()), "parameters")
     }
 
     fn set_parameter_values(&mut self, values: &[f64]) -> Result<(), ParameterError> {
-        let all = parameters::all(self.model(), values)?;
-        parameters::check(self.model(), &all)?;
-        self.bases = snapshot::bases(self.model(), &all);
+        let all = parameters::all(&self.model, values)?;
+        parameters::check(&self.model, &all)?;
+        self.bases = snapshot::bases(&self.model, &all);
         self.parameters = all;
         Ok(())
     }
@@ -55,14 +55,11 @@ impl Mechanism for NumericMechanism {
         speeds: &mut [f64],
         inputs: &mut [f64],
     ) -> Result<(), StateError> {
-        let state = numeric::State::of(self.model());
-        write(coordinates, &state.coordinates, "coordinates")?;
-        write(speeds, &state.speeds, "speeds")?;
-        write(inputs, &state.inputs, "inputs")
+        description::initial_state(&self.model, [coordinates, speeds, inputs])
     }
 
     fn normalise(&self, coordinates: &mut [f64]) -> Result<(), StateError> {
-        check_length(coordinates, self.model().coordinates.len(), "coordinates")?;
+        check_length(coordinates, self.model.coordinates.len(), "coordinates")?;
         normalise_quaternions(coordinates, &self.quaternions);
         Ok(())
     }
@@ -113,7 +110,7 @@ impl Mechanism for NumericMechanism {
         let matrix = DMatrix::from_fn(p, p, |i, j| known.values.mass_matrix[i][j]);
         let all = matrix * DVector::from_column_slice(accelerations)
             - DVector::from_column_slice(&known.values.forcing);
-        write(forces, all.as_slice(), "the generalized forces")
+        write(forces, all.as_slice(), "the generalised forces")
     }
 
     fn kinetic_energy(&self, state: &State<'_>) -> Result<f64, StateError> {
@@ -138,12 +135,12 @@ impl Mechanism for NumericMechanism {
         }
         let numbers = self.numbers(state)?;
         let mut slopes = Vec::new();
-        for equation in &self.model().configuration {
-            slopes.extend(configuration_slopes(self.model(), &numbers, equation).map_err(state_error)?);
+        for equation in &self.model.configuration {
+            slopes.extend(configuration_slopes(&self.model, &numbers, equation).map_err(state_error)?);
         }
         let known = self.still(state, |values| {
             let mut all = Vec::new();
-            for equation in &self.model().configuration {
+            for equation in &self.model.configuration {
                 all.extend(values.residual(equation, numeric::Level::Geometry)?.into_iter().map(|r| r.re));
             }
             Ok(all)

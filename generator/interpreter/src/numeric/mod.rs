@@ -5,6 +5,7 @@ mod failure;
 mod mechanism;
 mod snapshot;
 
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hodograph::generated::check_length;
@@ -16,7 +17,7 @@ use hodograph_model::numeric::{self, Evaluator, Failure};
 
 use self::failure::state_error;
 use self::snapshot::{Basis, Snapshot};
-use crate::{Error, description, parameters};
+use crate::{Error, description, parameters, read};
 
 /// A mechanism that is evaluated from its model alone: no derivation and no algebra engine are needed. It has
 /// the traits [`hodograph::Mechanism`] and [`hodograph::Contacts`], but no named quantities.
@@ -25,7 +26,7 @@ use crate::{Error, description, parameters};
 /// state costs some hundred times as much. What was computed of the last state is kept.
 #[derive(Debug)]
 pub struct NumericMechanism {
-    model: Arc<Mechanism>,
+    pub(crate) model: Arc<Mechanism>,
     /// all, in file order, `fixed` ones too
     parameters: Vec<f64>,
     quaternions: Vec<[usize; 4]>,
@@ -49,12 +50,17 @@ impl Clone for NumericMechanism {
 }
 
 impl NumericMechanism {
-    /// The mechanism of a model, with the parameters that the model states.
+    /// Reads a model file.
     ///
     /// # Errors
     ///
-    /// [`Error::NoValue`], [`Error::Parameters`].
-    pub fn new(model: Mechanism) -> Result<Self, Error> {
+    /// [`Error`]
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::with_stated_parameters(read::model(path)?.0)
+    }
+
+    /// The mechanism of a model, with the parameters that the model states.
+    pub(crate) fn with_stated_parameters(model: Mechanism) -> Result<Self, Error> {
         let value = |parameter: &hodograph_model::model::mechanism::Variable| {
             parameter.value.ok_or_else(|| Error::NoValue(parameter.name.clone()))
         };
@@ -62,17 +68,7 @@ impl NumericMechanism {
         Ok(Self::with(model, parameters)?)
     }
 
-    /// The mechanism of a model, with these parameters: all that are not `fixed`, in the order of the model.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Parameters`].
-    pub fn with_parameters(model: Mechanism, parameters: &[f64]) -> Result<Self, Error> {
-        let all = parameters::all(&model, parameters)?;
-        Ok(Self::with(model, all)?)
-    }
-
-    fn with(model: Mechanism, parameters: Vec<f64>) -> Result<Self, ParameterError> {
+    pub(crate) fn with(model: Mechanism, parameters: Vec<f64>) -> Result<Self, ParameterError> {
         parameters::check(&model, &parameters)?;
         Ok(NumericMechanism {
             quaternions: description::quaternions(&model),
@@ -82,11 +78,6 @@ impl NumericMechanism {
             parameters,
             last: Mutex::new(None),
         })
-    }
-
-    /// The model.
-    pub fn model(&self) -> &Mechanism {
-        &self.model
     }
 
     /// All parameters in file order, `fixed` ones too.
@@ -109,7 +100,14 @@ impl NumericMechanism {
     fn check(&self, state: &State<'_>) -> Result<(), StateError> {
         check_length(state.coordinates, self.model.coordinates.len(), "coordinates")?;
         check_length(state.speeds, self.freedom(), "speeds")?;
-        check_length(state.inputs, self.model.inputs.len(), "inputs")
+        check_length(state.inputs, self.model.inputs.len(), "inputs")?;
+        // Else the search for what is singular would blame the mechanism.
+        let mut given = [state.coordinates, state.speeds, state.inputs].into_iter().flatten();
+        if state.time.is_finite() && given.all(|number| number.is_finite()) {
+            Ok(())
+        } else {
+            Err(StateError::NotFinite)
+        }
     }
 
     /// The state as the numeric evaluation takes it.

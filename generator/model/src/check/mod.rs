@@ -21,9 +21,11 @@ mod states;
 mod unit_vectors;
 mod vector_constraints;
 
-use crate::diagnostics::{Diagnostic, Place, Severity, codes};
-use crate::model::{self, mechanism::Mechanism, symbols::Symbols};
-use crate::parts::Expansion;
+use std::collections::HashMap;
+
+use crate::diagnostics::{Diagnostic, Severity, codes};
+use crate::model::{self, mechanism::Mechanism, names::Symbol, symbols::Symbols};
+use crate::parts::{self, Expansion};
 use crate::source::{MAX_TOKENS, Source};
 use crate::span::Span;
 use crate::syntax::{self, lexer, token::Token, tree::Tree};
@@ -57,6 +59,8 @@ pub struct Analysis {
     pub tree: Tree,
     /// its names and their places
     pub symbols: Symbols,
+    /// the names that are declared in a file that is imported, and where
+    pub imported: HashMap<Symbol, parts::Place>,
     /// what could be read of the mechanism: a whole only if `has_errors` says no
     pub mechanism: Option<Mechanism>,
     /// errors and warnings, in the order of their places
@@ -97,12 +101,14 @@ fn expanded(source: &Source, expansion: &Expansion) -> Analysis {
     let Analysis { mechanism, diagnostics, symbols, .. } = analysed(source);
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     // names of imported files stand in other texts
-    let symbols = symbols.placed(|span| {
-        let place = expansion.places.find(span)?;
-        (place.file == 0).then_some(place.span)
-    });
+    let place = |span: Span| expansion.places.find(span);
+    let others =
+        symbols.declared.iter().filter_map(|declared| Some((declared.symbol, place(declared.place?)?)));
+    let imported = others.filter(|(_, place)| place.file > 0).collect();
+    let symbols = symbols.placed(|span| place(span).filter(|place| place.file == 0).map(|place| place.span));
     let mechanism = mechanism.filter(|_| !failed);
-    Analysis { mechanism, symbols, diagnostics: expansion.explained(diagnostics), ..Analysis::default() }
+    let diagnostics = expansion.explained(diagnostics);
+    Analysis { mechanism, symbols, imported, diagnostics, ..Analysis::default() }
 }
 
 /// The names of a model and their places, without a check of its numbers.
@@ -115,24 +121,13 @@ pub fn names(tokens: &[Token]) -> (Tree, Symbols) {
     (tree, symbols)
 }
 
-/// Reads and checks a model, and keeps all that was found on the way. Of a model with parts all places are
-/// those of its own text, what is said of a part stands at its use, and only the tokens, the names and the
-/// mechanism are kept.
+/// Reads and checks a model, and keeps all that was found on the way. Of a model with parts the tokens and the
+/// places of names are those of its own text, and what could be parsed is not kept; the places of mistakes are
+/// those of the expanded model, which [`Source::place`] and [`Source::in_itself`] find in the texts.
 pub fn analyse(source: &Source) -> Analysis {
     let Some(expansion) = source.expansion() else { return analysed(source) };
-    let Analysis { mechanism, symbols, mut diagnostics, .. } = expanded(source, expansion);
-    for diagnostic in &mut diagnostics {
-        let own = |span: Span| std::ptr::eq(source.locate(span).0, source);
-        diagnostic.related.retain(|label| own(label.span));
-        diagnostic.primary.span = source.in_itself(diagnostic.primary.span);
-        diagnostic.related.iter_mut().for_each(|label| label.span = source.in_itself(label.span));
-        for fix in &mut diagnostic.fixes {
-            let (Place::Replace(span) | Place::IntoBraces(span)) = &mut fix.place;
-            *span = source.in_itself(*span);
-        }
-    }
     let tokens = source.text().map(|text| lexer::tokens(text, MAX_TOKENS)).unwrap_or_default();
-    Analysis { tokens, symbols, mechanism, diagnostics, ..Analysis::default() }
+    Analysis { tokens, ..expanded(source, expansion) }
 }
 
 /// The same of the tokens of a model without parts.
@@ -184,5 +179,5 @@ fn analysed(source: &Source) -> Analysis {
     diagnostics.retain(|d| d.code != codes::NO_GAP || !failed && !others.contains(&d.primary.span));
     diagnostics.sort_by_key(|d| (d.primary.span, d.code));
     let mechanism = mechanism.map(|(mechanism, _)| mechanism);
-    Analysis { tokens, tree, symbols, mechanism, diagnostics }
+    Analysis { tokens, tree, symbols, mechanism, diagnostics, ..Analysis::default() }
 }

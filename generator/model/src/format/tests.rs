@@ -167,7 +167,7 @@ fn in_disorder(text: &str, seed: u64) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(50), ..ProptestConfig::with_cases(100) })]
     #[test]
     fn any_layout_is_put_in_order(which in 0usize..10_000, seed in any::<u64>()) {
         thread_local!(static MODELS: Vec<String> = models().into_iter().map(|(text, _)| text).collect());

@@ -278,3 +278,11 @@ pub fn reserved(name: &Name) -> Option<Diagnostic> {
     }
     None
 }
+
+/// The names that the rate of a coordinate may have: `u1` for `q1`, `u_hip` for `q_hip`, and in an instance of a
+/// part, whose names begin with that of the instance, `leg_u1` for `leg_q1`.
+pub fn speeds_of(coordinate: &str) -> impl Iterator<Item = String> {
+    let begins = |at: &usize| *at == 0 || coordinate[..*at].ends_with('_');
+    let places = coordinate.match_indices('q').map(|(at, _)| at).filter(begins);
+    places.map(|at| format!("{}u{}", &coordinate[..at], &coordinate[at + 1..]))
+}

@@ -56,6 +56,8 @@ pub fn contacts((striking, vertices): (Kind, usize), inside: bool, struck: Kind)
         (Rectangle, Plane | HalfSpace | Curve, false) => Some(4),
         // the vertices of both
         (Rectangle, Rectangle, false) => Some(8),
+        // the vertices of both, and edges
+        (Box, Box, false) => Some(8 + 8 + 9 * 4),
         (Polytope, Plane | HalfSpace | Surface | Curve, false) => Some(vertices),
         (Capsule, Capsule, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder | Box | Rectangle | Disc | Torus, false) => Some(1),

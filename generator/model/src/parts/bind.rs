@@ -18,6 +18,7 @@ use super::template::{Template, Word, expression};
 use super::text::shown;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::span::Span;
+use crate::suggest;
 use crate::syntax::token::{Token, TokenKind};
 use crate::syntax::tree::{Name, Section};
 use crate::syntax::units;
@@ -164,19 +165,7 @@ impl Resolver<'_, '_, '_> {
         used: &Use,
         model: &mut Model,
     ) {
-        let mut depth = 0_usize;
-        let splits = actual.tokens.iter().position(|token| {
-            match token.kind {
-                TokenKind::Open(_) => depth += 1,
-                TokenKind::Close(_) => depth = depth.saturating_sub(1),
-                _ => {}
-            }
-            depth == 0 && token.is_word("of")
-        });
-        let (point, owner) = match splits {
-            Some(at) => (&actual.tokens[..at], Some(&actual.tokens[at + 1..])),
-            None => (&actual.tokens[..], None),
-        };
+        let (point, owner) = point_and_owner(&actual.tokens);
         let parent = self.instances.list[instance].parent;
         let mut body = None;
         match (of, owner) {
@@ -249,8 +238,14 @@ impl Resolver<'_, '_, '_> {
             Meaning::Itself => match predefined(&word.token.text) {
                 Some(kind) => (word.token.text.clone(), kind),
                 None => {
-                    let message = format!("unknown name `{}`", word.token.text);
-                    self.instances.report(parent, codes::UNKNOWN_NAME, span, message, "");
+                    let name = word.token.text.as_str();
+                    let error = Diagnostic::new(codes::UNKNOWN_NAME, span, format!("unknown name `{name}`"));
+                    let names = self.instances.list[parent].members.keys().map(|(name, _)| name.as_str());
+                    let error = match suggest::nearest(name, names) {
+                        Some(near) => error.did_you_mean(near),
+                        None => error,
+                    };
+                    self.instances.push(parent, error);
                     return None;
                 }
             },
@@ -401,10 +396,9 @@ impl Resolver<'_, '_, '_> {
         argument: &Argument,
         help: &str,
     ) {
-        let span = self.instances.at(span, parent);
         let error = Diagnostic::new(codes::ARGUMENT_KIND, span, message)
             .related(argument.name.span, format!("`{}` is declared here", argument.name.text));
-        self.instances.mistakes.push(if help.is_empty() { error } else { error.help(help) });
+        self.instances.push(parent, if help.is_empty() { error } else { error.help(help) });
     }
 }
 
@@ -419,6 +413,23 @@ fn is_constant(tokens: &[Out]) -> bool {
         let calls = tokens.get(i + 1).is_some_and(|next| next.kind == TokenKind::Open('('));
         token.kind != TokenKind::Name || token.text == "pi" || calls && token.text != "touching"
     })
+}
+
+/// What is given for a point, `P of B`, or the point alone.
+pub fn point_and_owner(tokens: &[Token]) -> (&[Token], Option<&[Token]>) {
+    let mut depth = 0_usize;
+    let splits = tokens.iter().position(|token| {
+        match token.kind {
+            TokenKind::Open(_) => depth += 1,
+            TokenKind::Close(_) => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0 && token.is_word("of")
+    });
+    match splits {
+        Some(at) => (&tokens[..at], Some(&tokens[at + 1..])),
+        None => (tokens, None),
+    }
 }
 
 fn span_of(tokens: &[Token]) -> Option<Span> {

@@ -131,14 +131,14 @@ impl Reader<'_> {
             TokenKind::Name => number(self.numbers, &token.text).ok_or_else(|| {
                 let message = format!("`{}` is no count", token.text);
                 let near = suggest::nearest(&token.text, self.numbers.iter().map(|(name, _)| name.as_str()));
-                let mut error = self.wrong(token.span, &message);
-                error.help = Some(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => "a count is stated before the sections, `count n = 5;`, is the index of a `for`, or is \
-                             given to a part whose argument is `n: count`"
-                        .to_owned(),
-                });
-                error
+                let error = *self.wrong(token.span, &message);
+                Box::new(match near {
+                    Some(near) => error.did_you_mean(near),
+                    None => error.help(
+                        "a count is stated before the sections, `count n = 5;`, is the index of a `for`, or is \
+                         given to a part whose argument is `n: count`",
+                    ),
+                })
             }),
             TokenKind::Open('(') => {
                 let value = self.sum()?;

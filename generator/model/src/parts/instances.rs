@@ -17,7 +17,7 @@ use crate::syntax::tree::Name;
 /// A mechanism has at most this many instances and turns of repetitions.
 pub const MOST_INSTANCES: usize = 10_000;
 /// Parts and repetitions stand within each other at most this deep.
-const MOST_DEPTH: usize = 64;
+pub const MOST_DEPTH: usize = 64;
 
 /// A name with its indices.
 pub type Key = (String, Vec<i64>);
@@ -97,6 +97,8 @@ pub struct Instances<'a, 'p> {
     pub runs: Vec<Run>,
     /// each name of the expanded model, with the same as it is written outside
     pub shown: HashMap<String, String>,
+    /// for names that a part does not declare, by file and place, those that may be meant
+    pub near: HashMap<(u32, Span), String>,
     /// the instances that the mechanism itself uses
     pub families: Families,
     root: &'a Block,
@@ -139,6 +141,7 @@ impl<'a, 'p> Instances<'a, 'p> {
             list: vec![mechanism],
             runs: Vec::new(),
             shown: HashMap::new(),
+            near: HashMap::new(),
             families: catalogue.families(block, 0),
             root: block,
             templates: HashMap::new(),
@@ -208,18 +211,20 @@ impl<'a, 'p> Instances<'a, 'p> {
 
     /// Reports a mistake at a place of an instance.
     pub fn report(&mut self, instance: usize, code: Code, span: Span, message: String, help: &str) {
-        let span = self.at(span, instance);
         let error = Diagnostic::new(code, span, message);
-        self.mistakes.push(if help.is_empty() { error } else { error.help(help) });
+        self.push(instance, if help.is_empty() { error } else { error.help(help) });
+    }
+
+    /// Reports a mistake whose place is that of the text of an instance.
+    pub fn push(&mut self, instance: usize, mut error: Diagnostic) {
+        error.primary.span = self.at(error.primary.span, instance);
+        self.mistakes.push(error);
     }
 
     /// As [`Instances::report`], but once for all instances.
     pub fn report_once(&mut self, instance: usize, error: Diagnostic) {
         if self.said.insert(error.primary.span) {
-            let span = self.at(error.primary.span, instance);
-            let mut error = error;
-            error.primary.span = span;
-            self.mistakes.push(error);
+            self.push(instance, error);
         }
     }
 

@@ -5,7 +5,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::Expansion;
-use crate::diagnostics::{Code, Diagnostic, Label, Place as Change, codes};
+use crate::diagnostics::{Code, Diagnostic, Label, codes};
 use crate::span::Span;
 
 /// Uses around a place that are pointed out.
@@ -51,6 +51,14 @@ impl Expansion {
             );
             diagnostic.help = Some(help);
         }
+        let place = self.places.find(diagnostic.primary.span).unwrap_or_default();
+        // within a part its own names are meant
+        if let Some(near) =
+            self.near.get(&(place.file, place.span)).filter(|_| diagnostic.code == codes::UNKNOWN_NAME)
+        {
+            diagnostic.fixes.clear();
+            diagnostic = diagnostic.did_you_mean(near);
+        }
         // the last name is that in generated code, which two others become
         diagnostic.message = match diagnostic.message.rsplit_once(" both become ") {
             Some((names, rust)) => format!("{} both become {rust}", self.written(names)),
@@ -67,12 +75,6 @@ impl Expansion {
         diagnostic.related.retain(|label| {
             let place = self.places.find(label.span).unwrap_or_default();
             said.insert((place.file, place.span, label.text.clone()))
-        });
-        // what one use would need may be wrong for the others
-        diagnostic.fixes.retain(|fix| {
-            let (Change::Replace(span) | Change::IntoBraces(span)) = fix.place;
-            self.places.find(span).is_some_and(|place| place.site.is_none() && place.file == 0)
-                && self.shown.get(&fix.text).is_none_or(|shown| *shown == fix.text)
         });
         for (i, site) in self.places.sites(place).into_iter().take(MOST_USES).enumerate() {
             let more = match others {
@@ -93,11 +95,19 @@ impl Expansion {
             return text.to_owned();
         }
         let quoted =
-            |(i, piece): (usize, &str)| if i % 2 == 1 { self.names(piece) } else { piece.to_owned() };
+            |(i, piece): (usize, &str)| if i % 2 == 1 { self.names(piece, 0) } else { piece.to_owned() };
         text.split('`').enumerate().map(quoted).collect::<Vec<String>>().join("`")
     }
 
-    fn names(&self, text: &str) -> String {
+    /// Words of the expanded model as they are written at a place of it: within the part of `front_left`,
+    /// `knee` for `front_left_knee`.
+    pub fn written_at(&self, place: Span, words: &str) -> String {
+        let place = self.places.find(place).unwrap_or_default();
+        self.names(words, self.places.sites(place).len())
+    }
+
+    /// Words with the names of instances as they are written, without so many names of instances before them.
+    fn names(&self, text: &str, inside: usize) -> String {
         let is_part = |c: char| c == '_' || c.is_alphanumeric();
         let (mut out, mut rest) = (String::new(), text);
         while let Some(first) = rest.chars().next() {
@@ -106,7 +116,8 @@ impl Expansion {
                 false => first.len_utf8(),
             };
             let word = &rest[..length];
-            out.push_str(self.shown.get(word).map_or(word, String::as_str));
+            let shown = self.shown.get(word).map_or(word, String::as_str);
+            out.push_str(shown.splitn(inside + 1, '.').nth(inside).unwrap_or(shown));
             rest = &rest[length..];
         }
         out

@@ -13,6 +13,7 @@
 //! assembly   the sections of the expanded model
 //! emit       the blocks of all instances, written into these
 //! messages   diagnostics of the expanded model, said of the texts that its author wrote
+//! names      where each name stands in the texts, without expanding them
 //! ```
 //!
 //! Expanding is bounded: instances, files and tokens are counted, and no text is read twice.
@@ -25,6 +26,7 @@ mod emit;
 mod imports;
 mod instances;
 mod messages;
+pub mod names;
 mod outline;
 mod places;
 mod reader;
@@ -58,8 +60,8 @@ pub struct Expansion {
     pub tokens: Vec<Token>,
     /// where they come from
     pub places: Places,
-    /// the files that were imported, by name and text; the file `i` of a place is the entry `i - 1`
-    pub files: Vec<(String, String)>,
+    /// the files that were imported; the file `i` of a place is the entry `i - 1`
+    pub files: Vec<Imported>,
     /// what is wrong with the parts and their uses
     pub mistakes: Vec<Diagnostic>,
     /// what is wrong with the syntax, of the mechanism too
@@ -68,6 +70,8 @@ pub struct Expansion {
     pub is_library: bool,
     /// names of the expanded model as they are written outside of their parts
     shown: HashMap<String, String>,
+    /// for names that a part does not declare, by file and place, those that may be meant
+    near: HashMap<(u32, Span), String>,
 }
 
 /// Expands the parts of a model; nothing where it has none, or where its brackets do not match. `most` is the
@@ -106,9 +110,10 @@ pub fn expand(tokens: &[Token], files: &dyn Files, most: usize) -> Option<Expans
         mistakes.append(&mut instances.mistakes);
         shown = std::mem::take(&mut instances.shown);
     }
+    let near = instances.near;
     let tokens = if mistakes.is_empty() { model.tokens(&mut places) } else { own };
-    let files = read.into_iter().filter_map(|read| read.file).map(|file| (file.name, file.text)).collect();
-    Some(Expansion { tokens, places, files, mistakes, syntax, is_library, shown })
+    let files = read.into_iter().filter_map(|read| read.file).collect();
+    Some(Expansion { tokens, places, files, mistakes, syntax, is_library, shown, near })
 }
 
 /// The counts of a mechanism.

@@ -106,6 +106,17 @@ impl ArgumentKind {
         }
     }
 
+    /// Something that may be given at first; nothing for a body, of which none is given to all models.
+    pub fn placeholder(&self) -> Option<&'static str> {
+        match self {
+            ArgumentKind::Point { of: Some(_) } => Some("O of N"),
+            ArgumentKind::Point { of: None } => Some("O"),
+            ArgumentKind::Frame => Some("N"),
+            ArgumentKind::Body => None,
+            ArgumentKind::Count { .. } | ArgumentKind::Value { .. } => Some("1"),
+        }
+    }
+
     /// Whether it must be given.
     pub fn is_required(&self) -> bool {
         !matches!(
@@ -166,6 +177,8 @@ pub struct Use {
     pub indices: Vec<Vec<Token>>,
     /// what is given
     pub actuals: Vec<Actual>,
+    /// it is given between brackets
+    pub has_brackets: bool,
     /// where
     pub span: Span,
 }

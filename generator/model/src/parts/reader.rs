@@ -341,7 +341,8 @@ impl<'a> Reader<'a> {
             self.sign(TokenKind::Close(']'), "`]`", help)?;
         }
         let mut actuals = Vec::new();
-        if self.take(TokenKind::Open('(')) {
+        let has_brackets = self.take(TokenKind::Open('('));
+        if has_brackets {
             while !self.is(TokenKind::Close(')')) {
                 let name = self.name("the name of an argument", help)?;
                 self.sign(TokenKind::Sign(':'), "`:` and what is given", help)?;
@@ -355,7 +356,7 @@ impl<'a> Reader<'a> {
         }
         let span = start.to(self.tokens[self.at - 1].span);
         self.sign(TokenKind::Sign(';'), "`;` after the use", help)?;
-        Ok(Use { part, name, indices, actuals, span })
+        Ok(Use { part, name, indices, actuals, has_brackets, span })
     }
 
     /// `for i in from..to { .. }`
@@ -441,7 +442,7 @@ impl<'a> Reader<'a> {
             let error = Diagnostic::new(codes::SECTION_UNKNOWN, token.span, message);
             let near = suggest::nearest(word, Section::ALL.map(Section::word).into_iter());
             self.report(match near {
-                Some(near) => error.help(format!("did you mean `{near}`?")),
+                Some(near) => error.did_you_mean(near),
                 None => error.help("a part holds the sections of a mechanism, `use` and `for`"),
             });
             return Lost;

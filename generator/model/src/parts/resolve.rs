@@ -7,8 +7,8 @@ use super::count::{Numbers, number};
 use super::instances::{Instances, Member, dotted, names_of_arguments};
 use super::places::Place;
 use super::roles::{Kind, Role};
-use super::template::{Path, Word};
-use crate::diagnostics::codes;
+use super::template::{Path, Segment, Word};
+use crate::diagnostics::{Diagnostic, Place as Change, codes};
 use crate::suggest;
 use crate::syntax::token::{Token, TokenKind};
 
@@ -149,7 +149,10 @@ impl Resolver<'_, '_, '_> {
             return Meaning::Wrong;
         }
         // what is declared nowhere is reported where names are resolved, unless it would mean something there
-        let Some(outside) = self.instances.shown.get(&name).cloned() else { return Meaning::Itself };
+        let Some(outside) = self.instances.shown.get(&name).cloned() else {
+            self.note_near(instance, word);
+            return Meaning::Itself;
+        };
         let (message, help) = match self.instances.list[instance].part {
             None => (
                 format!("{name} is what `{outside}` is called in generated code"),
@@ -168,6 +171,19 @@ impl Resolver<'_, '_, '_> {
         };
         self.instances.report(instance, codes::OUTER_NAME, span, message, &help);
         Meaning::Wrong
+    }
+
+    /// Notes which name of a part may be meant by one that it does not declare.
+    fn note_near(&mut self, instance: usize, word: &Word) {
+        if self.instances.list[instance].part.is_none() {
+            return;
+        }
+        let own = self.instances.list[instance].members.keys().map(|(name, _)| name.as_str());
+        let given = self.bindings.get(instance).into_iter().flat_map(HashMap::keys).map(String::as_str);
+        if let Some(near) = suggest::nearest(&word.token.text, own.chain(given)).map(str::to_owned) {
+            let Place { file, span, .. } = self.place(instance, &word.token);
+            self.instances.near.insert((file, span), near);
+        }
     }
 
     /// The name of one contact of a pair of shapes, which is numbered: `foot_floor_2` of `foot_floor`.
@@ -235,7 +251,7 @@ impl Resolver<'_, '_, '_> {
                     if let Some(text) = numbered {
                         return Meaning::Name(text, Kind::Point);
                     }
-                    self.no_member(instance, current, word, &here, &key);
+                    self.no_member(instance, current, word, segment, &here, &key);
                     return Meaning::Wrong;
                 }
             }
@@ -250,6 +266,7 @@ impl Resolver<'_, '_, '_> {
         instance: usize,
         current: usize,
         word: &Word,
+        segment: &Segment,
         here: &str,
         key: &(String, Vec<i64>),
     ) {
@@ -276,13 +293,16 @@ impl Resolver<'_, '_, '_> {
             None => false,
         };
         let names = self.instances.list[current].members.keys().map(|(name, _)| name.as_str());
-        let help = match suggest::nearest(name, names) {
-            _ if given => "it is an argument: name what was given for it".to_owned(),
-            Some(near) => format!("did you mean `{near}`?"),
-            None => String::new(),
+        let error = Diagnostic::new(codes::UNKNOWN_NAME, span, format!("{place} declares no `{name}`"));
+        let error = match suggest::nearest(name, names) {
+            _ if given => error.help("it is an argument: name what was given for it"),
+            Some(near) => {
+                let at = segment.name.span;
+                error.help(format!("did you mean `{near}`?")).fix(Change::Replace(at), near)
+            }
+            None => error,
         };
-        let message = format!("{place} declares no `{name}`");
-        self.instances.report(instance, codes::UNKNOWN_NAME, span, message, &help);
+        self.instances.push(instance, error);
     }
 }
 

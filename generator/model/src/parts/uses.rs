@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::count::{Numbers, evaluate};
 use super::instances::{Instance, Instances, MOST_INSTANCES, Member, dotted, joined, own_quantities};
 use super::outline::{ArgumentKind, Part, Use};
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place as Change, codes};
+use crate::span::Span;
 use crate::suggest;
 
 impl<'a> Instances<'a, '_> {
@@ -18,12 +19,12 @@ impl<'a> Instances<'a, '_> {
             }
             let names = self.catalogue.names(file);
             let message = format!("there is no part `{}`", used.part.text);
-            let help = match suggest::nearest(&used.part.text, names.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if names.is_empty() => "state it, `part Leg(..) { .. }`, or import its file".to_owned(),
-                None => format!("the parts known here are {}", names.join(", ")),
+            let error = Diagnostic::new(codes::PART_UNKNOWN, used.part.span, message);
+            let error = match suggest::nearest(&used.part.text, names.iter().copied()) {
+                Some(near) => error.did_you_mean(near),
+                None if names.is_empty() => error.help("state it, `part Leg(..) { .. }`, or import its file"),
+                None => error.help(format!("the parts known here are {}", names.join(", "))),
             };
-            let error = Diagnostic::new(codes::PART_UNKNOWN, used.part.span, message).help(help);
             self.report_once(parent, error);
             return;
         };
@@ -137,7 +138,7 @@ impl<'a> Instances<'a, '_> {
                     .related(declared.name.span, format!("`{}` is declared here", declared.name.text));
                 let all: Vec<String> = known().map(|name| format!("`{name}`")).collect();
                 let error = match suggest::nearest(&name.text, known()) {
-                    Some(near) => error.help(format!("did you mean `{near}`?")),
+                    Some(near) => error.did_you_mean(near),
                     None if all.is_empty() => error.help("it takes no arguments"),
                     None => error.help(format!("its arguments and own quantities are {}", all.join(", "))),
                 };
@@ -161,6 +162,18 @@ impl<'a> Instances<'a, '_> {
             for argument in missing.iter().take(5) {
                 error =
                     error.related(argument.name.span, format!("`{}` is declared here", argument.name.text));
+            }
+            let placeholders: Option<Vec<String>> = missing
+                .iter()
+                .map(|argument| Some(format!("{}: {}", argument.name.text, argument.kind.placeholder()?)))
+                .collect();
+            if let Some(placeholders) = placeholders {
+                let (name, after) = (used.name.span, Span { start: used.span.end, end: used.span.end });
+                let text = placeholders.join(", ");
+                error = match used.actuals.is_empty() && !used.has_brackets {
+                    true => error.fix(Change::Replace(after), format!("({text})")),
+                    false => error.fix(Change::IntoBraces(name), text),
+                };
             }
             self.report_once(parent, error);
             complete = false;

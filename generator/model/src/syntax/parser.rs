@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use super::token::{Bad, Token, TokenKind};
 use super::tree::{Name, Section, Tree};
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
 use crate::span::Span;
 use crate::unicode;
 
@@ -325,6 +325,14 @@ impl<'a> Parser<'a> {
             }
             Some(TokenKind::Sign('.')) if what == "an expression" => {
                 error.help("a number has a digit before its point, as `0.5`")
+            }
+            Some(TokenKind::Sign(':')) if what.starts_with("`=`") => {
+                let here = self.here();
+                error.fix(Place::Replace(here), "=")
+            }
+            Some(TokenKind::Sign('=')) if what.starts_with("`:`") => {
+                let here = self.here();
+                error.fix(Place::Replace(here), ":")
             }
             Some(TokenKind::Sign('=')) if self.before_is('=') => error.help("an equation has one `=`"),
             Some(TokenKind::Sign('<' | '>')) => error.help("there are no inequalities in a model"),

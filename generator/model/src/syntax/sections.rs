@@ -3,7 +3,8 @@
 use super::parser::{Lost, Parser};
 use super::token::TokenKind;
 use super::tree::*;
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
+use crate::span::Span;
 
 impl Parser<'_> {
     /// All entries of a section; stops before the closing brace.
@@ -177,8 +178,13 @@ impl Parser<'_> {
         } else if self.is_open('[') {
             error = error.help("there are no indices; the axes of a frame are `B.x`, `B.y` and `B.z`");
         }
+        if self.is_close() || begins {
+            let after = Span { start: self.before().end, end: self.before().end };
+            self.report(error.fix(Place::Replace(after), separator.to_string()));
+            return Ok(());
+        }
         self.report(error);
-        if self.is_close() || begins { Ok(()) } else { Err(Lost) }
+        Err(Lost)
     }
 
     /// A word before the name that an entry begins with, as in `let x = ..` or `const m: kg`: said, and

@@ -9,12 +9,12 @@ use crate::program::operation::{Bits, Operation, Value};
 use crate::program::{Guard, Output, Program};
 use crate::program::{Quantity, Structure};
 
-/// Why a text is no derivation that this generator reads.
+/// The error of a text that is not a derivation in this format.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodeError {
-    /// line, from 1
+    /// line of the error, counted from 1
     pub line: usize,
-    /// what is wrong there
+    /// description of the error
     pub message: String,
 }
 
@@ -26,8 +26,8 @@ impl fmt::Display for DecodeError {
 
 impl std::error::Error for DecodeError {}
 
-/// Reads a derivation, which must be to the byte what was written, but for ends of lines that a checkout has
-/// made CR LF throughout.
+/// Reads a derivation. The text must equal the written one byte for byte; only LF may have become CR LF on
+/// all lines, as some checkouts do.
 pub fn decode(text: &str) -> Result<Artifact, DecodeError> {
     let text = &*line_feeds(text);
     let mut lines = Lines { rest: text, number: 0 };
@@ -36,7 +36,7 @@ pub fn decode(text: &str) -> Result<Artifact, DecodeError> {
     let digest = lines.after(DIGEST)?;
     if !lines.rest.is_empty() {
         lines.number += 1;
-        return Err(lines.error("something stands after the end of the derivation"));
+        return Err(lines.error("there is text after the end of the derivation"));
     }
     if digest != hash::of_text(written) {
         return Err(lines.error(
@@ -46,14 +46,14 @@ pub fn decode(text: &str) -> Result<Artifact, DecodeError> {
     Ok(artifact)
 }
 
-/// The text with LF where every line ends in CR LF.
+/// The text with LF line ends, if all its line ends are CR LF; else the text as it is.
 fn line_feeds(text: &str) -> Cow<'_, str> {
     let ends = text.matches('\n').count();
     let all = text.matches("\r\n").count() == ends && text.matches('\r').count() == ends;
     if ends > 0 && all { text.replace("\r\n", "\n").into() } else { text.into() }
 }
 
-/// Everything above the digest.
+/// Reads everything before the digest.
 fn body(lines: &mut Lines<'_>) -> Result<Artifact, DecodeError> {
     let header = lines.after("hodograph derivation ")?;
     if header != FORMAT.to_string() {
@@ -94,7 +94,7 @@ fn body(lines: &mut Lines<'_>) -> Result<Artifact, DecodeError> {
                 let operation = operation(&program, words).ok_or_else(|| wrong("not a valid operation"))?;
                 program.operations.push(operation);
             }
-            _ => return Err(wrong("not what a derivation has here (is the file cut off, or merged?)")),
+            _ => return Err(wrong("not a line of a derivation (was the file cut off, or merged?)")),
         }
     }
     Ok(Artifact { generator, model, program })
@@ -124,7 +124,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// A value that exists already and is a number, not a sine-cosine pair.
+/// An earlier value that is a number, not a sine-cosine pair.
 fn value(program: &Program, word: &str) -> Option<Value> {
     let value = Value(word.parse().ok()?);
     let operation = program.operations.get(value.index())?;

@@ -49,7 +49,7 @@ fn write(text: &mut String, program: &Program, model: &str) -> std::fmt::Result 
         if let Some(scale) = guard.scale {
             write!(text, " scale {}", scale.0)?;
         }
-        // A message is one line whatever it was made of.
+        // A message is written on one line.
         let message: Vec<&str> = guard.message.split_whitespace().collect();
         writeln!(text, " : {}", message.join(" "))?;
     }

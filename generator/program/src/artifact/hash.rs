@@ -6,19 +6,20 @@ use hodograph_model::source::Source;
 use hodograph_model::syntax::token::{Token, TokenKind};
 use hodograph_model::syntax::tree::Section;
 
-/// A hash of all that the equations of a model depend on, as 64 hexadecimal digits: its tokens without
-/// documentation, without the values of what is not `fixed` and without the surfaces of contacts, which are
-/// defaults of the module and no part of its equations, but for the words by which they ask for the relative
-/// rotation of two bodies. Blanks, line ends and comments do not matter either, and a model has the same hash in a
-/// file and inline.
+/// A hash of everything on which the equations of a model depend, as 64 hexadecimal digits: the tokens of the
+/// model without documentation, without the values of quantities that are not `fixed`, and without the
+/// surfaces of contacts. These values and surfaces are defaults of the module and not part of its equations;
+/// only the words of a surface that require the relative rotation of two bodies count. Blanks, line ends and
+/// comments do not matter, and a model has the same hash in a file and inline.
 pub fn model_hash(source: &Source) -> String {
     let mut hash = Sha256::new();
     hash.update(b"hodograph model 2\n");
     if let Ok(tokens) = source.tokens() {
-        let said: Vec<&Token> = tokens.iter().filter(|token| !is_documentation(token)).collect();
-        let surfaces = surfaces(&said);
-        let passed = defaults(&said).into_iter().zip(surfaces).map(|(default, surface)| default || surface);
-        for (token, _) in said.iter().zip(passed).filter(|(_, passed)| !passed) {
+        let significant: Vec<&Token> = tokens.iter().filter(|token| !is_documentation(token)).collect();
+        let surfaces = surfaces(&significant);
+        let skipped =
+            defaults(&significant).into_iter().zip(surfaces).map(|(default, surface)| default || surface);
+        for (token, _) in significant.iter().zip(skipped).filter(|(_, skipped)| !skipped) {
             let (kind, text) = match token.kind {
                 TokenKind::Name => (b'n', token.text.clone()),
                 TokenKind::Number => (b'0', token.text.clone()),
@@ -49,17 +50,17 @@ fn is_documentation(token: &Token) -> bool {
     matches!(token.kind, TokenKind::OuterDoc | TokenKind::InnerDoc)
 }
 
-/// For each token: whether it is part of `= value` of a quantity that is not `fixed`.
+/// For each token: whether it is part of the `= value` of a quantity that is not `fixed`.
 fn defaults(tokens: &[&Token]) -> Vec<bool> {
     let mut is_default = vec![false; tokens.len()];
-    // brackets that are open; the section of quantities that is; where in an entry of it this is
-    let (mut depth, mut within, mut entry) = (0_usize, false, Entry::Begins);
+    // depth of open brackets; whether a section of quantities is open; position within its entry
+    let (mut depth, mut within, mut entry) = (0_usize, false, Entry::Before);
     for (i, token) in tokens.iter().enumerate() {
         match token.kind {
             TokenKind::Open(_) => {
                 if depth == 0 {
                     within = i > 0 && holds_quantities(tokens[i - 1]);
-                    entry = Entry::Begins;
+                    entry = Entry::Before;
                 }
                 depth += 1;
             }
@@ -70,8 +71,8 @@ fn defaults(tokens: &[&Token]) -> Vec<bool> {
             continue;
         }
         entry = match entry {
-            _ if depth == 1 && (token.is_sign(',') || token.is_sign(';')) => Entry::Begins,
-            Entry::Begins if token.kind == TokenKind::Name => {
+            _ if depth == 1 && (token.is_sign(',') || token.is_sign(';')) => Entry::Before,
+            Entry::Before if token.kind == TokenKind::Name => {
                 let named = tokens.get(i + 1).is_some_and(|next| next.kind == TokenKind::Name);
                 if named && token.text == "fixed" { Entry::Fixed } else { Entry::Declared }
             }
@@ -83,8 +84,8 @@ fn defaults(tokens: &[&Token]) -> Vec<bool> {
     is_default
 }
 
-/// For each token: whether it is part of the `surface: { .. }` of a contact, or of what separates it from
-/// the other fields.
+/// For each token: whether it is part of the `surface: { .. }` of a contact, or of the comma that separates
+/// it from the other fields.
 fn surfaces(tokens: &[&Token]) -> Vec<bool> {
     let mut is_surface = vec![false; tokens.len()];
     let (mut depth, mut of_contacts) = (0_usize, false);
@@ -133,16 +134,16 @@ fn surfaces(tokens: &[&Token]) -> Vec<bool> {
     is_surface
 }
 
-/// Where in the declaration of a quantity a token stands.
+/// The position of a token in the declaration of a quantity.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Entry {
-    /// before it
-    Begins,
-    /// in the declaration of what is not `fixed`, before its value
+    /// before the declaration
+    Before,
+    /// in the declaration of a quantity that is not `fixed`, before its value
     Declared,
-    /// in that of what is `fixed`
+    /// in the declaration of a `fixed` quantity
     Fixed,
-    /// in the value of what is not `fixed`
+    /// in the value of a quantity that is not `fixed`
     Value,
 }
 
@@ -180,7 +181,7 @@ loads { gravity: -g*N.y; force on P: F*N.x; }
     }
 
     #[test]
-    fn what_the_equations_do_not_depend_on_does_not_matter() {
+    fn texts_with_the_same_equations_have_the_same_hash() {
         for (from, to) in [
             ("A rod.", "Another text."),
             ("/// mass\n", "// a remark\n"),
@@ -205,7 +206,7 @@ loads { gravity: -g*N.y; force on P: F*N.x; }
         assert_eq!(contact(&format!("point: P, {surface}, normal: N.y")), plain);
         assert_eq!(contact(&format!("{surface}, point: P, normal: N.y")), plain);
         assert_eq!(contact("point: P, normal: N.y, surface: { mu: 0.4 }"), plain);
-        // But for what asks for equations.
+        // Except the words that require equations of rotation.
         let turns = contact("point: P, normal: N.y, surface: { mu: 0.4, rolling: 0.01 }");
         assert_ne!(turns, plain);
         assert_eq!(contact("point: P, normal: N.y, surface: { rolling: 0 }"), turns);
@@ -215,7 +216,7 @@ loads { gravity: -g*N.y; force on P: F*N.x; }
     }
 
     #[test]
-    fn what_the_equations_depend_on_matters() {
+    fn texts_with_other_equations_have_other_hashes() {
         for (from, to) in [
             ("fixed l: m = 0.5", "fixed l: m = 0.6"),
             ("fixed l: m = 0.5", "l: m = 0.5"),

@@ -1,4 +1,4 @@
-//! Finds the derivation that is kept for a model.
+//! Finds the stored derivation of a model.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -9,16 +9,16 @@ use super::{Artifact, MAX_BYTES, decode, model_hash};
 use crate::files;
 use crate::program::Program;
 
-/// What was found where the derivation of a model is kept.
+/// The result of looking for the derivation of a model.
 #[derive(Clone, Debug)]
 pub enum Loaded {
-    /// that of the model
+    /// the derivation belongs to this model
     Fresh(Box<Program>),
-    /// nothing
+    /// there is no derivation
     Absent,
-    /// that of another text of the model
+    /// the derivation belongs to another text of the model
     Stale,
-    /// what is no derivation, was changed since it was written, or cannot be read: why
+    /// the file is not a derivation, was changed after it was written, or cannot be read; with the reason
     Damaged(String),
 }
 
@@ -43,7 +43,7 @@ pub fn load_text(text: &str, source: &Source) -> Loaded {
 }
 
 impl Loaded {
-    /// What is wrong with it, as the rest of a sentence about the file; nothing if it is fresh.
+    /// What is wrong with the derivation, as the rest of a sentence about its file; `None` if it is fresh.
     pub fn fault(&self) -> Option<String> {
         match self {
             Loaded::Fresh(_) => None,
@@ -57,7 +57,7 @@ impl Loaded {
     ///
     /// # Errors
     ///
-    /// It is absent, stale or damaged: [`Loaded::fault`].
+    /// The derivation is absent, stale or damaged, as [`Loaded::fault`] says.
     pub fn program(self) -> Result<Program, String> {
         let fault = self.fault().unwrap_or_default();
         match self {

@@ -36,24 +36,24 @@ use hodograph_model::arithmetic::Function;
 /// The version of the format. It changes when a program of one version would mean something else in another.
 pub const FORMAT: u32 = 2;
 
-/// What the last line begins with.
+/// The beginning of the last line.
 const DIGEST: &str = "digest ";
 
-/// Largest size of a derivation, in bytes: a thousand times what shipped models have.
+/// Largest size of a derivation, in bytes: a thousand times that of shipped models.
 pub const MAX_BYTES: usize = 128 << 20;
 
-/// A derivation as read.
+/// A decoded derivation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Artifact {
     /// version of the generator that wrote it
     pub generator: String,
-    /// [`model_hash`] of the model that it was derived from
+    /// [`model_hash`] of the model from which it was derived
     pub model: String,
     /// the program
     pub program: Program,
 }
 
-/// Words for functions.
+/// The words of functions in derivation files.
 const FUNCTIONS: [(Function, &str); 17] = [
     (Function::Sin, "sin"),
     (Function::Cos, "cos"),

@@ -29,7 +29,7 @@ fn program() -> Program {
 }
 
 #[test]
-fn what_is_written_reads_back() {
+fn decoding_inverts_encoding() {
     let mut program = program();
     let text = encode(&program, "00ff");
     program.guards[0].message = "the arm is stretched".into();
@@ -45,7 +45,7 @@ fn damaged_derivations_are_refused_or_valid() {
     for end in 0..text.len() - 1 {
         assert!(decode(&text[..end]).is_err(), "cut at {end}");
     }
-    // Every single character replaced: never a panic, never an operand out of order.
+    // Replace every single character: no panic, no operand out of order.
     for at in 0..text.len() {
         for replacement in ["", "9", " ", "\n", "-", "x", "99999999999999999999"] {
             let damaged = format!("{}{replacement}{}", &text[..at], &text[at + 1..]);
@@ -59,7 +59,7 @@ fn damaged_derivations_are_refused_or_valid() {
 }
 
 #[test]
-fn another_format_is_named() {
+fn the_error_names_another_format() {
     let text = encode(&program(), "00ff").replacen("derivation 2", "derivation 7", 1);
     let error = decode(&text).unwrap_err();
     assert_eq!(error.line, 1);
@@ -67,7 +67,7 @@ fn another_format_is_named() {
 }
 
 #[test]
-fn what_stands_after_the_end_is_refused() {
+fn text_after_the_end_is_refused() {
     let text = encode(&program(), "00ff");
     for more in ["\n", " ", "x\n", "digest 00\n", &text] {
         assert!(decode(&format!("{text}{more}")).is_err(), "{more:?}");
@@ -75,7 +75,7 @@ fn what_stands_after_the_end_is_refused() {
     let error = decode(&format!("{text}more\n")).unwrap_err();
     assert_eq!(
         (error.line, error.message.as_str()),
-        (text.lines().count() + 1, "something stands after the end of the derivation")
+        (text.lines().count() + 1, "there is text after the end of the derivation")
     );
 }
 
@@ -87,8 +87,8 @@ fn line_ends_of_a_checkout_do_not_matter_if_they_are_all_alike() {
     assert!(decode(&text.replace('\n', "\r")).is_err());
 }
 
-/// A text that differs from a derivation in one character is none: changed, left out, put in, or changed for
-/// its neighbour.
+/// A text that differs from a derivation in one character is refused: one character changed, left out,
+/// inserted, or exchanged with the next.
 #[test]
 fn a_single_character_makes_a_derivation_invalid() {
     let others = ['0', '7', '.', '-', ' ', '\n', '\r', '\t', 'e', 'A', 'é', '\u{200b}'];
@@ -96,8 +96,8 @@ fn a_single_character_makes_a_derivation_invalid() {
     for text in [
         encode(&program(), "00ff"),
         include_str!("../../tests/golden/pendulum.derivation").to_owned(),
-        include_str!("../../../../tests/parallel/cart/models/cart.derivation").to_owned(),
-        include_str!("../../../../tests/downstream/derived/puck.derivation").to_owned(),
+        include_str!("../../../../tests/fixtures/cart/models/cart.derivation").to_owned(),
+        include_str!("../../../../tests/fixtures/downstream/derived/puck.derivation").to_owned(),
     ] {
         assert!(decode(&text).is_ok());
         let characters: Vec<char> = text.chars().collect();
@@ -109,18 +109,18 @@ fn a_single_character_makes_a_derivation_invalid() {
             characters[..at].iter().chain(put).chain(&characters[at + skip..]).collect()
         };
         for at in 0..=characters.len() {
-            // another one at each place
+            // replace it by another character
             let other = others[at % others.len()];
             refused(with(at, &[other], 0), at, "put in");
             let Some(&here) = characters.get(at) else { continue };
             refused(with(at, &[], 1), at, "left out");
             refused(with(at, &[here], 0), at, "doubled");
             refused(with(at, &[other], 1), at, "changed");
-            // the digit beside it
+            // replace a digit by the next digit
             let next = if here == '9' { '8' } else { char::from_u32(here as u32 + 1).unwrap_or(' ') };
-            refused(with(at, &[next], 1), at, "changed for the next");
+            refused(with(at, &[next], 1), at, "replaced by the next digit");
             if let Some(&after) = characters.get(at + 1) {
-                refused(with(at, &[after, here], 2), at, "changed for its neighbour");
+                refused(with(at, &[after, here], 2), at, "exchanged with the next");
             }
         }
     }

@@ -9,8 +9,8 @@ use crate::program::{Inputs, Program, operate};
 use hodograph_model::arithmetic::reproducible::Reproducible;
 use hodograph_model::arithmetic::{Arithmetic, Function};
 
-/// Values below this part of their terms vanish.
-const NOTHING: f64 = 1e-22;
+/// A value below this part of its largest term counts as zero.
+const NEGLIGIBLE: f64 = 1e-22;
 
 fn derivations(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -30,8 +30,8 @@ fn numbers(seed: u64) -> Vec<f64> {
     (0..400).map(|_| random.between(0.3, 2.0)).collect()
 }
 
-/// What rounding takes from a sum is nothing but for rounding: this says whether the value is a part of that,
-/// `a - (t - (t - a))` with `t = a + ..`.
+/// Whether the value is part of the computed rounding error of a sum t = a + b, `a - (t - (t - a))`. That
+/// error is 0 in exact arithmetic, but not in doubles.
 fn is_rounding(program: &Program, value: Value) -> bool {
     let (term, part) = match program.operation(value) {
         Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),
@@ -79,9 +79,9 @@ fn vanishing(program: &Program, seed: u64) -> Vec<Value> {
         };
         if is_rounding(program, value) {
             result.0 = Reproducible::exactly(1e-3 * unknown[index % unknown.len()]);
-        } else if result.0.rounded().abs() < NOTHING * terms || is_unit(operation, result.0) {
+        } else if result.0.rounded().abs() < NEGLIGIBLE * terms || is_unit(operation, result.0) {
             found.push(value);
-            // what follows from it is not told
+            // report a value that is identically constant once, not again in the values computed from it
             result.0 = Reproducible::exactly(unknown[index % unknown.len()]);
         }
         known[index] = result;
@@ -99,10 +99,12 @@ fn is_unit(operation: Operation, result: Reproducible) -> bool {
             | Operation::Call(..)
             | Operation::Call2(..)
     );
-    made && [1.0, -1.0].iter().any(|&unit| (result - Reproducible::exactly(unit)).rounded().abs() < NOTHING)
+    made && [1.0, -1.0]
+        .iter()
+        .any(|&unit| (result - Reproducible::exactly(unit)).rounded().abs() < NEGLIGIBLE)
 }
 
-/// Operations that their symbols show to be without effect.
+/// Operations that have no effect, as their operands show.
 fn idle(program: &Program) -> Vec<Value> {
     let constant = |value: Value| match program.operation(value) {
         Operation::Constant(bits) => Some(bits.get()),
@@ -131,7 +133,7 @@ fn idle(program: &Program) -> Vec<Value> {
 }
 
 #[test]
-fn no_shipped_derivation_computes_nothing() {
+fn no_shipped_derivation_has_idle_operations() {
     let mut found = Vec::new();
     for folder in ["../../models", "../../tests", "../../simulation"] {
         derivations(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut found);

@@ -2,12 +2,12 @@
 
 use super::{Term, product};
 
-/// Nothing.
+/// The number 0.
 pub const ZERO: Term = Term::Number(0.0);
 
 const ONE: Term = Term::Number(1.0);
 
-/// The opposite.
+/// The negative of a term.
 pub fn neg(a: Term) -> Term {
     match a {
         Term::Neg(a) => *a,
@@ -17,7 +17,7 @@ pub fn neg(a: Term) -> Term {
     }
 }
 
-/// The sum, like terms collected.
+/// The sum, with like terms collected.
 pub fn sum(a: Term, b: Term) -> Term {
     let mut terms: Vec<(f64, Term)> = parts(a).into_iter().map(coefficient).collect();
     for (number, base) in parts(b).into_iter().map(coefficient) {
@@ -42,7 +42,7 @@ fn parts(term: Term) -> Vec<Term> {
     }
 }
 
-/// The number in front of a term, and what it multiplies: 1 where the term is a number.
+/// The number in front of a term, and the rest of the term: 1 if the term is a number.
 fn coefficient(term: Term) -> (f64, Term) {
     let (minus, term) = term.unsigned();
     let (number, base) = match term {
@@ -56,7 +56,7 @@ fn coefficient(term: Term) -> (f64, Term) {
     (if minus { -number } else { number }, base)
 }
 
-/// A number times what has none in front.
+/// The product of a number and a term that has no number in front.
 fn multiple(number: f64, base: Term) -> Term {
     if base == ONE {
         return Term::Number(number);
@@ -70,7 +70,7 @@ fn multiple(number: f64, base: Term) -> Term {
     if number < 0.0 { neg(term) } else { term }
 }
 
-/// The product, equal factors as powers.
+/// The product, with equal factors as powers.
 pub fn times(a: Term, b: Term) -> Term {
     if a == ZERO || b == ZERO {
         return ZERO;
@@ -96,8 +96,8 @@ pub fn times(a: Term, b: Term) -> Term {
     if minus_a == minus_b { product } else { neg(product) }
 }
 
-/// The place of a factor: a function stands last, for what follows its argument could be taken for part of
-/// it.
+/// Sorting key of a factor. Functions stand last, since a factor after `sin x` could be read as part of its
+/// argument.
 fn place(factor: &Term) -> u8 {
     match factor {
         Term::Number(_) => 0,
@@ -108,7 +108,7 @@ fn place(factor: &Term) -> u8 {
     }
 }
 
-/// Base and exponent.
+/// Base and exponent of a factor.
 fn powered(term: &Term) -> (&Term, u32) {
     match term {
         Term::Power(base, n) => (base, *n),
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cancels_is_nothing() {
+    fn terms_that_cancel_give_zero() {
         assert_eq!(sum(Term::Z(1), neg(Term::Z(1))), ZERO);
         assert_eq!(sum(sum(Term::Z(1), Term::Z(2)), neg(Term::Z(1))), Term::Z(2));
         assert_eq!(sum(times(ZERO, Term::Z(1)), Term::Z(2)), Term::Z(2));

@@ -13,7 +13,7 @@ use crate::program::{Output, Program, Quantity};
 use hodograph_model::arithmetic::Function;
 use hodograph_model::model::mechanism::{Mechanism, Variable};
 
-/// An expression of more symbols than this is cut in two.
+/// An expression with more symbols than this is split.
 const LONGEST: usize = 24;
 
 pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]) -> Document {
@@ -80,7 +80,7 @@ fn names(mechanism: &Mechanism) -> Vec<(&'static str, Vec<Entry>)> {
     lists.into_iter().filter(|(_, list)| !list.is_empty()).collect()
 }
 
-/// Needs no name even if it is used often.
+/// Whether a term is so short that it needs no name even if it is used often.
 fn is_short(term: &Term) -> bool {
     match term {
         Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => true,
@@ -90,7 +90,7 @@ fn is_short(term: &Term) -> bool {
     }
 }
 
-/// Number of symbols.
+/// Number of symbols in a term.
 pub fn size(term: &Term) -> usize {
     match term {
         Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => 1,
@@ -109,7 +109,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn of(&self, value: Value) -> Term {
-        // Only what is exactly nothing has no term.
+        // Only values that are exactly 0 have no term.
         self.terms.get(&value).cloned().unwrap_or(ZERO)
     }
 
@@ -152,15 +152,15 @@ impl Reader<'_> {
         }
     }
 
-    /// The name of a small deviation: of an independent coordinate, an independent speed, or an input.
+    /// The name of a small deviation of an independent coordinate, an independent speed, or an input.
     fn deviation(&self, index: u32) -> String {
         let states = self.mechanism.coordinates.iter().chain(&self.mechanism.speeds).filter(|q| !q.dependent);
         let name = states.chain(&self.mechanism.inputs).nth(index as usize).map_or("?", |q| q.name.as_str());
         format!("delta_{name}")
     }
 
-    /// The equations of a quantity; its symbol gets a stroke where a name of the model looks like one of its
-    /// entries.
+    /// The equations of a quantity. Its symbol gets a prime if one of its entries would look like a name of
+    /// the model.
     fn section(&self, output: &Output, symbols: &Symbols) -> Section {
         let heading = heading(self.mechanism, output.quantity);
         let taken = |head: &str, index: String| symbols.has(&Symbol { head: head.to_owned(), index });
@@ -171,7 +171,7 @@ impl Reader<'_> {
         let matrix = matrix(output);
         let mut symbol = heading.symbol.to_owned();
         let mut left_sides = lefts(self.mechanism, output, &symbol);
-        // A matrix is written with its symbol, which must be no name either.
+        // A matrix is written with its symbol, which must differ from all names, too.
         while left_sides.iter().any(clash) || (!matrix.is_empty() && taken(&symbol, String::new())) {
             symbol.push('\'');
             left_sides = lefts(self.mechanism, output, &symbol);

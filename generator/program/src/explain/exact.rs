@@ -1,5 +1,5 @@
-//! Leaves out operations that are 0 in exact arithmetic: a program computes the rounding error of sums of
-//! angles to correct it; in the equations it has no place.
+//! Leaves out operations that are 0 in exact arithmetic. Programs compute the rounding error of sums of
+//! angles in order to correct it; the written equations do without.
 
 use std::collections::{HashMap, HashSet};
 
@@ -7,63 +7,65 @@ use crate::program::Program;
 use crate::program::Slice;
 use crate::program::operation::{Operation, Value};
 
-/// The values of a slice that mean something in exact arithmetic, with the number of their uses.
+/// The values of a slice that are not 0 in exact arithmetic, with the number of their uses.
 pub struct Exact {
     uses: HashMap<Value, usize>,
 }
 
 impl Exact {
-    /// Looks at what a slice computes.
+    /// Finds the values that are 0 in exact arithmetic, and counts the uses of the others.
     pub fn new(program: &Program, slice: &Slice<'_>) -> Self {
-        let mut nothing = HashSet::new();
+        let mut zeros = HashSet::new();
         for &value in &slice.order {
-            if is_nothing(program, value, &nothing) {
-                nothing.insert(value);
+            if is_zero(program, value, &zeros) {
+                zeros.insert(value);
             }
         }
         let mut uses: HashMap<Value, usize> =
             slice.outputs.iter().flat_map(|output| &output.values).map(|&value| (value, 0)).collect();
-        for &value in slice.order.iter().rev().filter(|value| !nothing.contains(value)) {
+        for &value in slice.order.iter().rev().filter(|value| !zeros.contains(value)) {
             if !uses.contains_key(&value) {
                 continue;
             }
-            for operand in meant(program.operation(value), &nothing) {
+            for operand in nonzero_operands(program.operation(value), &zeros) {
                 *uses.entry(operand).or_default() += 1;
             }
         }
-        uses.retain(|value, _| !nothing.contains(value));
+        uses.retain(|value, _| !zeros.contains(value));
         Exact { uses }
     }
 
-    /// How often a value is used; `None` if it is nothing, or serves nothing else.
+    /// How often a value is used; `None` if it is 0 in exact arithmetic, or only such values use it.
     pub fn uses(&self, value: Value) -> Option<usize> {
         self.uses.get(&value).copied()
     }
 }
 
-/// The operands that count.
-fn meant(operation: Operation, nothing: &HashSet<Value>) -> impl Iterator<Item = Value> {
+/// The operands of an operation that contribute to its result in exact arithmetic.
+fn nonzero_operands(operation: Operation, zeros: &HashSet<Value>) -> impl Iterator<Item = Value> {
     use Operation::*;
     let of: Vec<Value> = match operation {
         MulAdd(a, b, c) | MulSub(a, b, c) | NegMulAdd(a, b, c)
-            if [a, b].iter().any(|v| nothing.contains(v)) =>
+            if [a, b].iter().any(|v| zeros.contains(v)) =>
         {
             vec![c]
         }
         _ => operation.operands().collect(),
     };
-    of.into_iter().filter(|value| !nothing.contains(value))
+    of.into_iter().filter(|value| !zeros.contains(value))
 }
 
-fn is_nothing(program: &Program, value: Value, nothing: &HashSet<Value>) -> bool {
+fn is_zero(program: &Program, value: Value, zeros: &HashSet<Value>) -> bool {
     use Operation::*;
     match program.operation(value) {
-        Neg(a) => nothing.contains(&a),
-        Mul(a, b) => nothing.contains(&a) || nothing.contains(&b),
+        Neg(a) => zeros.contains(&a),
+        Mul(a, b) => zeros.contains(&a) || zeros.contains(&b),
         Add(a, b) => {
-            (nothing.contains(&a) && nothing.contains(&b)) || cancels(program, a, b) || cancels(program, b, a)
+            (zeros.contains(&a) && zeros.contains(&b))
+                || sum_is_zero(program, a, b)
+                || sum_is_zero(program, b, a)
         }
-        Sub(a, b) => (nothing.contains(&a) && nothing.contains(&b)) || returns(program, a, b),
+        Sub(a, b) => (zeros.contains(&a) && zeros.contains(&b)) || difference_is_zero(program, a, b),
         // the same as `b c - ((b c + a) - a)`
         MulSub(b, c, part) => match program.operation(part) {
             Sub(total, a) => program.operation(total) == MulAdd(b, c, a),
@@ -73,8 +75,8 @@ fn is_nothing(program: &Program, value: Value, nothing: &HashSet<Value>) -> bool
     }
 }
 
-/// Whether `a - b` is nothing: `a - (t - (t - a))`, or `a - ((a + c) - c)`.
-fn returns(program: &Program, a: Value, b: Value) -> bool {
+/// Whether `a - b` is identically 0: `a - (t - (t - a))`, or `a - ((a + c) - c)`.
+fn difference_is_zero(program: &Program, a: Value, b: Value) -> bool {
     use Operation::*;
     let Sub(total, part) = program.operation(b) else { return false };
     let sum = match program.operation(total) {
@@ -84,8 +86,8 @@ fn returns(program: &Program, a: Value, b: Value) -> bool {
     sum || program.operation(part) == Sub(total, a)
 }
 
-/// Whether `a + b` is nothing: `a + ((c - a) - c)`.
-fn cancels(program: &Program, a: Value, b: Value) -> bool {
+/// Whether `a + b` is identically 0: `a + ((c - a) - c)`.
+fn sum_is_zero(program: &Program, a: Value, b: Value) -> bool {
     use Operation::*;
     let Sub(total, c) = program.operation(b) else { return false };
     program.operation(total) == Sub(c, a)

@@ -5,15 +5,15 @@ use crate::program::quantity::{Axes, Description, Entries};
 use crate::program::{Output, Quantity};
 use hodograph_model::model::mechanism::{Mechanism, Variable};
 
-/// What stands over the equations of a quantity.
+/// The heading of the equations of a quantity.
 pub struct Heading {
-    /// what it belongs to, such as a contact; may be empty
+    /// the contact, point or frame that the quantity belongs to; empty for a quantity of the whole mechanism
     pub group: String,
-    /// what it is
+    /// its title
     pub title: &'static str,
     /// its symbol
     pub symbol: &'static str,
-    /// its unit, or in which units its entries are; may be empty
+    /// its unit, or the units of its entries; may be empty
     pub unit: &'static str,
 }
 
@@ -76,7 +76,7 @@ pub fn lefts(mechanism: &Mechanism, output: &Output, symbol: &str) -> Vec<Left> 
     lefts
 }
 
-/// What the axes are called.
+/// The names of the axes.
 fn axis_names(axes: Axes) -> Option<[char; 3]> {
     match axes {
         Axes::None => None,
@@ -85,7 +85,7 @@ fn axis_names(axes: Axes) -> Option<[char; 3]> {
     }
 }
 
-/// Which equations stand in which row of a matrix; nothing for what is no matrix.
+/// For each row of a matrix the indices of its equations; empty if the output is not a matrix.
 pub fn matrix(output: &Output) -> Vec<Vec<usize>> {
     match output.quantity.description().entries {
         Entries::Symmetric => vec![vec![0, 1, 2], vec![1, 3, 4], vec![2, 4, 5]],

@@ -4,7 +4,7 @@ use super::collect::size;
 use super::symbols::{Form, Symbol, form, greek_name, unit};
 use super::{Document, Equation, Left, Place, Rank, Section, Term};
 
-/// A line of an equation holds summands of so many symbols.
+/// The largest number of symbols on a line of an equation.
 const LINE: usize = 14;
 
 const HEAD: &str = "\\documentclass[a4paper]{article}\n\\usepackage[T1]{fontenc}\n\\usepackage{textcomp}\n\\usepackage{amsmath}\n\
@@ -33,7 +33,8 @@ pub fn write(document: &Document) -> String {
     out + "\\end{document}\n"
 }
 
-/// Text with what LaTeX would take for its own, and with letters that its fonts lack named by their numbers.
+/// Text with the special characters of LaTeX escaped; letters that its fonts lack are written by their code
+/// points.
 fn plain(text: &str) -> String {
     let mut out = String::new();
     for letter in text.chars() {
@@ -176,7 +177,7 @@ impl Writer<'_> {
         out
     }
 
-    /// A right side in pieces, between which a line may end, with the number of their symbols.
+    /// A right side in pieces, between which a line may be broken, with the number of symbols of each.
     fn pieces(&self, term: &Term) -> Vec<(String, usize)> {
         match term {
             Term::Sum(terms) => self.summands(terms),
@@ -196,7 +197,7 @@ impl Writer<'_> {
         all
     }
 
-    /// A summand in pieces: a long factor in brackets may be broken at its signs.
+    /// A summand in pieces: a long bracketed factor may be broken at its signs.
     fn factors(&self, term: &Term, needed: Rank) -> Vec<(String, usize)> {
         let long =
             |term: &Term| matches!(term, Term::Sum(_)) && size(term) > LINE / 2 && super::is_flat(term);
@@ -270,7 +271,7 @@ impl Writer<'_> {
         if term.rank() < needed { format!("\\left({text}\\right)") } else { text }
     }
 
-    /// The argument of a sine: a symbol by itself, anything else in brackets.
+    /// The argument of a function: a single symbol as it is, anything else in brackets.
     fn argument(&self, term: &Term) -> String {
         match term {
             Term::Name(_) | Term::Z(_) | Term::Rate(_) => self.term(term, Rank::Atom),

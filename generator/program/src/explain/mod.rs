@@ -1,8 +1,8 @@
 //! Writes the equations of a mechanism for people: as text, LaTeX or HTML.
 //!
-//! The operations of a program are converted back to expressions, with like terms collected and without the
-//! operations that only correct rounding. An expression that is used more than once, or would make a line too
-//! long, gets a name: z1, z2 .. as in the paper.
+//! The operations of a program are converted back to expressions; like terms are collected, and operations
+//! that only correct rounding are left out. An expression that is used more than once, or would make a line
+//! too long, gets a name: z1, z2 .. as in the paper.
 
 mod arithmetic;
 mod collect;
@@ -18,7 +18,7 @@ use crate::program::Quantity;
 use crate::program::operation::Stage;
 use hodograph_model::model::mechanism::Mechanism;
 
-/// How equations are written.
+/// The format of written equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// plain text
@@ -39,7 +39,7 @@ pub fn explain(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
     }
 }
 
-/// The quantities that a reader of the paper looks for, as far as the program has them.
+/// The quantities of the program that a reader of the paper looks for.
 pub fn usual(program: &Program) -> Vec<Quantity> {
     let wanted = |quantity: &Quantity| quantity.description().usual;
     program.outputs.iter().map(|output| output.quantity).filter(wanted).collect()
@@ -63,7 +63,7 @@ enum Term {
     Call(&'static str, Vec<Term>),
 }
 
-/// What stands where, to know where brackets are needed.
+/// The precedence of a term, which decides where brackets are needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Sum,
@@ -81,7 +81,7 @@ impl Term {
         }
     }
 
-    /// The term without its sign, and whether it has one.
+    /// The absolute term, and whether the term has a minus sign.
     fn unsigned(&self) -> (bool, Term) {
         match self {
             Term::Neg(term) => (true, (**term).clone()),
@@ -103,7 +103,7 @@ fn product(mut factors: Vec<Term>) -> Term {
     if factors.len() == 1 { factors.remove(0) } else { Term::Product(factors) }
 }
 
-/// An equation: what it is for, and what that is.
+/// An equation: left side and right side.
 #[derive(Clone, Debug)]
 struct Equation {
     left: Left,
@@ -117,32 +117,32 @@ enum Left {
     Z(usize),
     /// an entry of a quantity: its symbol, and its indices where it has more than one entry
     Entry(String, Vec<String>),
-    /// a quantity that belongs to a name of the model, such as a rate
+    /// a quantity that belongs to a name of the model; `true` if it is the rate of that name
     Of(String, bool),
 }
 
 /// Equations under a heading.
 #[derive(Clone, Debug)]
 struct Section {
-    /// what it belongs to, such as a contact; may be empty
+    /// the contact, point or frame that the equations belong to; may be empty
     group: String,
     title: String,
     /// may be empty
     unit: String,
-    /// of the whole quantity, unless a name of the model has it
+    /// the symbol of the whole quantity; `None` if its entries have names of the model
     symbol: Option<String>,
-    /// which equations stand in which row of a matrix; empty for what is no matrix
+    /// for each row of a matrix the indices of its equations; empty if the quantity is not a matrix
     matrix: Vec<Vec<usize>>,
     equations: Vec<Equation>,
 }
 
-/// An entry of a matrix with more symbols than this is written below it.
+/// An entry of a matrix with more symbols than this is written as an equation below the matrix.
 const SHORT: usize = 4;
-/// The same for matrices of many columns.
+/// The same limit for matrices with more than [`MANY_COLUMNS`] columns.
 const SHORTEST: usize = 2;
 const MANY_COLUMNS: usize = 4;
 
-/// What intermediate symbols stand under.
+/// The heading of intermediate symbols.
 const INTERMEDIATE: &str = "Intermediate symbols";
 
 impl Section {
@@ -154,8 +154,8 @@ impl Section {
         }
     }
 
-    /// Where the equations form a matrix that is worth showing: for each place the term that stands there, or
-    /// else the equation that is to be written below; and the equations to be written.
+    /// The matrix of a section if it is worth showing: in each place the term, or the equation that is
+    /// written below the matrix. Second, the equations to be written.
     fn laid_out(&self) -> (Vec<Vec<Place<'_>>>, Vec<&Equation>) {
         let many = self.matrix.first().is_some_and(|row| row.len() > MANY_COLUMNS);
         let short = if many { SHORTEST } else { SHORT };
@@ -175,7 +175,7 @@ impl Section {
                     cells.push(Place::Term(&equation.right));
                     continue;
                 }
-                // In a symmetric matrix the entry is that of the mirror place.
+                // The lower triangle of a symmetric matrix refers to the upper one.
                 let mirror = self.matrix.get(column).and_then(|line| line.get(row)).copied();
                 let index =
                     mirror.filter(|&mirror| column < row && self.equations[mirror].right == equation.right);
@@ -191,7 +191,7 @@ impl Section {
     }
 }
 
-/// Whether no part is higher than a line.
+/// Whether every part of a term fits on the height of a line.
 fn is_flat(term: &Term) -> bool {
     match term {
         Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => true,
@@ -201,23 +201,23 @@ fn is_flat(term: &Term) -> bool {
     }
 }
 
-/// What stands at a place of a matrix.
+/// The content of a place of a matrix.
 enum Place<'a> {
     Term(&'a Term),
     Symbol(&'a Left),
 }
 
-/// A name of the model and what it stands for.
+/// A name of the model with its documentation.
 #[derive(Clone, Debug)]
 struct Entry {
     name: String,
     unit: String,
     docs: String,
-    /// that of the model, in its unit
+    /// the value in the model, in its unit
     value: Option<f64>,
 }
 
-/// Everything to be written.
+/// The content of a document.
 #[derive(Clone, Debug)]
 struct Document {
     title: String,

@@ -52,8 +52,8 @@ pub fn greek_name(letter: char) -> Option<&'static str> {
     GREEK.iter().find(|(_, known)| *known == letter).map(|(name, _)| *name)
 }
 
-/// The symbol of a name, by itself: `q1` is q with the index 1, `gamma` a Greek letter, `m_arm` m with the
-/// index arm, `vx` v with the index x, `walpha` w with the index alpha.
+/// The symbol of a single name: `q1` is q with the index 1, `gamma` a Greek letter, `m_arm` m with the index
+/// arm, `vx` v with the index x, `walpha` w with the index alpha.
 pub fn symbol(name: &str) -> Symbol {
     let (head, tail) = match name.split_once('_') {
         Some((head, tail)) if !head.is_empty() && !tail.is_empty() => (head, tail),
@@ -68,8 +68,8 @@ pub fn symbol(name: &str) -> Symbol {
     Symbol { head: greek.map_or(head.to_owned(), |(_, letter)| letter.to_string()), index }
 }
 
-/// Where the index begins in letters that are no word: after the first of two letters, or of a letter and the
-/// name of a Greek one; else at the end.
+/// Where the index begins in a name without digits and underscores: after the first of two letters, or after
+/// a letter that a Greek letter's name follows; else at the end.
 fn indexed(letters: &str) -> usize {
     let greek = |text: &str| GREEK.iter().any(|(name, _)| *name == text);
     let mut rest = letters.chars();
@@ -90,7 +90,7 @@ pub struct Symbols {
 }
 
 impl Symbols {
-    /// Symbols for these names. A name whose symbol another one has already is written out instead.
+    /// Symbols for these names. A name whose symbol is already taken is written out instead.
     pub fn new<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Self {
         let numbered = |letter: &str| {
             let mut indexed = names.clone().filter_map(|name| name.strip_prefix(letter));
@@ -114,13 +114,13 @@ impl Symbols {
         Symbols { of, letter }
     }
 
-    /// The same for a mechanism in whose equations the time does not stand: its symbol is free.
+    /// The same symbols without that of the time, for a mechanism whose equations do not contain the time.
     pub fn without_time(mut self) -> Self {
         self.of.remove("time");
         self
     }
 
-    /// Whether a name looks like this.
+    /// Whether one of the names has this symbol.
     pub fn has(&self, symbol: &Symbol) -> bool {
         self.of.values().any(|known| known == symbol)
     }
@@ -170,12 +170,12 @@ pub enum Form {
     Ratio(u32, u32),
 }
 
-/// Denominators up to this are looked for.
+/// Denominators up to this are tried.
 const LARGEST_DENOMINATOR: u32 = 360;
-/// A number of fewer digits is written as it is.
+/// A number with fewer digits is written as a decimal.
 const MANY_DIGITS: usize = 10;
 
-/// The shortest form that reads back as the same double: a decimal, or a quotient where the decimal would be
+/// The shortest form that reads back as the same double: a decimal, or a quotient if the decimal would be
 /// long.
 pub fn form(number: f64) -> Form {
     let text = format!("{number:e}");
@@ -283,7 +283,7 @@ mod tests {
         for (number, text) in cases {
             assert_eq!(written(number), text);
         }
-        // Whatever is written is the number, to the bit.
+        // Every form reads back as the same double.
         let mut random = hodograph_random::Random::new(1);
         for _ in 0..20_000 {
             let number = f64::from_bits(random.bits() >> 1);

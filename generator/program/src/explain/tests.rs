@@ -87,12 +87,12 @@ fn latex_is_balanced() {
     }
 }
 
-/// The children of a MathML element that must have just so many.
+/// MathML elements that must have a fixed number of children.
 const ARITIES: [(&str, usize); 6] =
     [("mfrac", 2), ("msub", 2), ("msup", 2), ("mover", 2), ("msubsup", 3), ("msqrt", 1)];
 
-/// What a MathML element says, in a line; panics where it is not as it should be.
-fn said(node: roxmltree::Node<'_, '_>) -> String {
+/// The content of a MathML element in a line; panics if the element is malformed.
+fn line_of(node: roxmltree::Node<'_, '_>) -> String {
     let name = node.tag_name().name();
     let children: Vec<_> = node.children().filter(|child| child.is_element()).collect();
     if let Some((_, arity)) = ARITIES.iter().find(|(known, _)| *known == name) {
@@ -105,11 +105,11 @@ fn said(node: roxmltree::Node<'_, '_>) -> String {
             assert!(
                 !pair.iter().all(factor),
                 "a bare product: {:?}",
-                pair.iter().map(|node| said(*node)).collect::<Vec<_>>()
+                pair.iter().map(|node| line_of(*node)).collect::<Vec<_>>()
             );
         }
     }
-    let all = || children.iter().map(|child| said(*child)).collect::<String>();
+    let all = || children.iter().map(|child| line_of(*child)).collect::<String>();
     match name {
         "mn" => {
             let text = node.text().unwrap_or("");
@@ -117,23 +117,23 @@ fn said(node: roxmltree::Node<'_, '_>) -> String {
             text.to_owned()
         }
         "mi" | "mo" => node.text().unwrap_or("").to_owned(),
-        "mfrac" => format!("({})/({})", said(children[0]), said(children[1])),
-        "msub" => format!("{}_{}", said(children[0]), said(children[1])),
-        "msubsup" => format!("{}_{}^{}", said(children[0]), said(children[1]), said(children[2])),
-        "msup" => format!("{}^{}", said(children[0]), said(children[1])),
-        "mover" => format!("dot {}", said(children[0])),
+        "mfrac" => format!("({})/({})", line_of(children[0]), line_of(children[1])),
+        "msub" => format!("{}_{}", line_of(children[0]), line_of(children[1])),
+        "msubsup" => format!("{}_{}^{}", line_of(children[0]), line_of(children[1]), line_of(children[2])),
+        "msup" => format!("{}^{}", line_of(children[0]), line_of(children[1])),
+        "mover" => format!("dot {}", line_of(children[0])),
         "msqrt" => format!("sqrt({})", all()),
         "math" | "mrow" | "mtable" | "mtr" | "mtd" => all(),
         other => panic!("MathML of browsers has no {other}"),
     }
 }
 
-/// The equations of a page, each as its row says them.
+/// The equations of a page, each as one line.
 fn rows(html: &str) -> Vec<String> {
     let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
     let page = roxmltree::Document::parse_with_options(html, options)
         .unwrap_or_else(|error| panic!("{error}\n{html}"));
-    page.descendants().filter(|node| node.has_tag_name("math")).for_each(|node| drop(said(node)));
+    page.descendants().filter(|node| node.has_tag_name("math")).for_each(|node| drop(line_of(node)));
     let rows = page.descendants().filter(|node| node.attribute("class") == Some("equation"));
     let row = |row: roxmltree::Node<'_, '_>| {
         let columns: Vec<_> = row.children().filter(|child| child.is_element()).collect();
@@ -142,7 +142,7 @@ fn rows(html: &str) -> Vec<String> {
             ["left", "sign", "right"]
         );
         let maths = row.descendants().filter(|node| node.has_tag_name("math"));
-        maths.map(said).collect::<String>()
+        maths.map(line_of).collect::<String>()
     };
     rows.map(row).collect()
 }
@@ -176,7 +176,7 @@ fn pages_have_a_row_for_each_equation() {
     }
 }
 
-/// A force F on a mass K: the equations' own F and K are told from them.
+/// A force F on a mass K: the symbols F and K of the equations must differ from those names.
 #[test]
 fn quantities_do_not_look_like_names_of_the_model() {
     let source = "mechanism T; parameters { K: kg = 1, l: m = 1 } inputs { F: N*m } coordinates { q1: rad } speeds { u1: rad/s } \
@@ -205,7 +205,7 @@ fn quantities_do_not_look_like_names_of_the_model() {
     assert_eq!(rows(&html), ["F\u{2032}=F", "K\u{2032}=K"]);
 }
 
-/// Every kind of term, in every place where brackets matter.
+/// Every kind of term, in every place where it could need brackets.
 #[test]
 fn terms_are_bracketed_and_numbers_are_powers_of_ten() {
     let [a, b, c] = ["a", "b", "c"].map(|name| Term::Name(name.to_owned()));
@@ -290,7 +290,7 @@ fn terms_are_bracketed_and_numbers_are_powers_of_ten() {
 }
 
 #[test]
-fn what_mends_the_rounding_of_angles_is_left_out() {
+fn corrections_of_the_rounding_of_angles_are_left_out() {
     let explained = |form: fn(&mut Graph, [Node; 4]) -> Node| {
         let mut graph = Graph::new();
         let nodes = [Input::Coordinate(0), Input::Speed(0), Input::Input(0), Input::Time]

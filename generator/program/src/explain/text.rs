@@ -3,9 +3,9 @@
 use super::symbols::{Form, form, unit};
 use super::{Document, Equation, Left, Rank, Term};
 
-/// Lines are not longer than this where a sum can be broken.
+/// The greatest length of a line, if a sum can be broken.
 const WIDTH: usize = 110;
-/// Between factors.
+/// The sign between factors.
 const TIMES: &str = "·";
 
 pub fn write(document: &Document) -> String {
@@ -70,7 +70,7 @@ fn lines(document: &Document, right: &Term, width: usize) -> Vec<String> {
 }
 
 struct Writer {
-    /// of intermediate symbols
+    /// the letter of intermediate symbols
     letter: &'static str,
 }
 
@@ -87,7 +87,7 @@ impl Writer {
         format!("{sign}{}", self.term(&part, Rank::Product))
     }
 
-    /// A term, in brackets where something of at least this rank is needed.
+    /// A term, in brackets if its rank is below `needed`.
     fn term(&self, term: &Term, needed: Rank) -> String {
         let text = match term {
             Term::Number(number) => self.number(*number, needed),
@@ -99,7 +99,7 @@ impl Writer {
                 terms.iter().enumerate().map(|(index, part)| self.summand(index, part)).collect()
             }
             Term::Product(factors) => {
-                // A quotient that is not the first factor would take in what stands before it.
+                // A quotient after another factor needs brackets: `a·b/c` would divide `a`, too.
                 let factors = factors.iter().enumerate().map(|(index, factor)| match factor {
                     Term::Quotient(..) if index > 0 => self.term(factor, Rank::Atom),
                     _ => self.term(factor, Rank::Product),

@@ -1,5 +1,5 @@
-//! Evaluates quantities of a program with their derivatives along several directions at once, parameters included: forward
-//! differentiation, operation by operation.
+//! Evaluates quantities of a program and their derivatives along several directions at once, also with
+//! respect to parameters, by forward-mode automatic differentiation.
 //!
 //! Values have the bits of [`super::Prepared`]. Derivatives have no step size and no truncation error.
 
@@ -10,11 +10,11 @@ use crate::program::{Inputs, Program, Quantity, operate};
 use hodograph_model::arithmetic::{Arithmetic, Function, call, call2, mul_add, sin_cos};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// So many directions go through the operations together.
+/// Number of directions that are propagated together.
 const LANES: usize = 8;
 
-/// How the numbers from outside change along `k` directions. Each slice has `k` numbers per component; one that is empty
-/// says that nothing of it changes.
+/// Derivatives of the inputs along `k` directions. Each slice has `k` numbers per component; an empty slice
+/// means that its inputs are constant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rates<'a> {
     /// of the time (k)
@@ -28,7 +28,7 @@ pub struct Rates<'a> {
 }
 
 impl Rates<'_> {
-    /// The rates of an input along the directions from `first` on.
+    /// The derivatives of an input along the directions from `first` on.
     fn get(&self, input: Input, first: usize, k: usize) -> [f64; LANES] {
         let (list, index) = match input {
             Input::Time => (self.time, 0),
@@ -41,7 +41,7 @@ impl Rates<'_> {
     }
 }
 
-/// The numbers of a component along the directions from `first` on; beyond the last direction they are 0.
+/// The derivatives of a component along the directions from `first` on; beyond the last direction they are 0.
 fn lanes(list: &[f64], index: usize, first: usize, k: usize) -> [f64; LANES] {
     let mut rates = [0.0; LANES];
     let row = list.get(index * k + first..(index + 1) * k).unwrap_or(&[]);
@@ -49,11 +49,12 @@ fn lanes(list: &[f64], index: usize, first: usize, k: usize) -> [f64; LANES] {
     rates
 }
 
-/// Some quantities of a program, ready to be evaluated many times with their derivatives along `k` directions.
+/// Some quantities of a program, prepared for repeated evaluation with their derivatives along `k`
+/// directions.
 #[derive(Clone, Debug)]
 pub struct Directional {
     directions: usize,
-    /// per block of directions, what depends on parameters alone
+    /// for each block of directions the values that depend on parameters alone
     templates: Vec<Vec<(Dual, Dual)>>,
     inputs: Vec<(usize, Input)>,
     steps: Vec<(usize, Operation)>,
@@ -61,8 +62,9 @@ pub struct Directional {
 }
 
 impl Directional {
-    /// Prepares those of the quantities that the program has, in this order. `parameters` are all of them in file order,
-    /// `fixed` ones too; `by_parameters` (their number x k) is how they change along the directions.
+    /// Prepares those of the quantities that the program has, in this order. `parameters` are all parameters
+    /// in file order, `fixed` ones included; `by_parameters` (number of parameters x k) holds their
+    /// derivatives along the directions.
     pub fn new(
         program: &Program,
         constants: &Constants,
@@ -94,7 +96,7 @@ impl Directional {
                         (Dual { value, by }, Dual::exactly(0.0))
                     }
                     _ => {
-                        // The values are those of twice the digits.
+                        // The values are computed in double-double arithmetic.
                         let (first, second) =
                             operate(operation, &none, |value: Value| template[value.index()]);
                         let (a, b) = constants.pair(value);
@@ -113,22 +115,23 @@ impl Directional {
         new
     }
 
-    /// How many numbers there are.
+    /// Number of results.
     pub fn len(&self) -> usize {
         self.results.len()
     }
 
-    /// Whether there are none, because the program has none of the quantities.
+    /// Whether there are no results, because the program has none of the quantities.
     pub fn is_empty(&self) -> bool {
         self.results.is_empty()
     }
 
-    /// Computes the quantities one after the other, by rows, and their derivatives (as many rows, `k` columns).
+    /// Computes the quantities, one after the other, by rows, and their derivatives (one row for each result,
+    /// `k` columns).
     ///
     /// # Errors
     ///
-    /// [`Failed::NotFinite`] where a value or a derivative is infinite or not a number. Whether something vanishes that
-    /// must not is told by [`super::Prepared`] alone.
+    /// [`Failed::NotFinite`] if a value or a derivative is infinite or not a number. Guards are not checked
+    /// here, only by [`super::Prepared`].
     pub fn evaluate(
         &self,
         arguments: &Arguments<'_>,
@@ -163,7 +166,7 @@ impl Directional {
     }
 }
 
-/// A number and its derivatives along some directions.
+/// A number and its derivatives along [`LANES`] directions.
 #[derive(Clone, Copy, Debug)]
 struct Dual {
     value: f64,
@@ -171,13 +174,13 @@ struct Dual {
 }
 
 impl Dual {
-    /// A function of this number that has this value and this slope.
+    /// A function of this number with the given value and slope.
     fn with(self, value: f64, slope: f64) -> Self {
-        // What does not change stays so where the slope is infinite.
+        // A derivative of 0 stays 0 even if the slope is infinite.
         Dual { value, by: self.by.map(|rate| if rate == 0.0 { 0.0 } else { slope * rate }) }
     }
 
-    /// A function of two numbers that has this value and these slopes.
+    /// A function of two numbers with the given value and slopes.
     fn of_two(self, b: Self, value: f64, slopes: (f64, f64)) -> Self {
         let mut by = [0.0; LANES];
         for ((slot, a), b) in by.iter_mut().zip(self.by).zip(b.by) {
@@ -273,7 +276,7 @@ impl Arithmetic for Dual {
                 let square = self.value * self.value + b.value * b.value;
                 (b.value / square, -self.value / square)
             }
-            // Where both are equal the derivative is that of the first.
+            // If both are equal, the derivative is that of the first.
             Function::Min | Function::Max if value == self.value => (1.0, 0.0),
             Function::Min | Function::Max => (0.0, 1.0),
             _ => (f64::NAN, f64::NAN),
@@ -286,7 +289,7 @@ impl Arithmetic for Dual {
 mod tests {
     use super::*;
 
-    /// Every function of one number agrees with differences of order four.
+    /// The slopes of functions of one number agree with finite differences of order four.
     #[test]
     fn slopes_agree_with_differences() {
         use Function::*;
@@ -303,11 +306,11 @@ mod tests {
                 assert_eq!(found.by[0], 0.0);
             }
         }
-        // A root of zero that does not change has no infinite derivative.
+        // The root of a constant 0 has the derivative 0, not infinity.
         assert_eq!(Dual::exactly(0.0).call(Sqrt).by, [0.0; LANES]);
     }
 
-    /// The product rule and its kin, and functions of two numbers, against differences.
+    /// Products, quotients and functions of two numbers agree with finite differences.
     #[test]
     fn operations_on_two_numbers_agree_with_differences() {
         let number = |value: f64, rate: f64| Dual { value, by: [rate; LANES] };

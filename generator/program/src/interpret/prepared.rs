@@ -1,5 +1,5 @@
-//! Prepares quantities that are evaluated often: selects and renumbers the operations that they need, and
-//! computes once what depends on parameters only. The results have the same bits as those of
+//! Prepares quantities for repeated evaluation: selects and renumbers the operations that they need, and
+//! computes the values that depend on parameters alone once. The results have the same bits as those of
 //! [`super::Evaluator`].
 
 use crate::program::graph::Input;
@@ -7,8 +7,8 @@ use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Inputs, Program, Quantity, VANISHING, operate};
 use hodograph_model::arithmetic::DoubleDouble;
 
-/// The numbers from outside but for parameters, borrowed; each in the unit that the model declares, in file
-/// order.
+/// The inputs of a program without the parameters, borrowed; each in the unit that the model declares, in
+/// file order.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Arguments<'a> {
     /// time, s
@@ -26,7 +26,7 @@ pub struct Arguments<'a> {
 }
 
 impl Arguments<'_> {
-    /// One of the numbers; what is not there is not a number.
+    /// The value of an input; NaN if there is none.
     pub(super) fn get(&self, input: Input) -> f64 {
         let (list, index) = match input {
             Input::Time => return self.time,
@@ -41,16 +41,18 @@ impl Arguments<'_> {
     }
 }
 
-/// What a program computes of parameters alone, in twice the digits and rounded once.
+/// The values of a program that depend on parameters alone, computed in double-double arithmetic and rounded
+/// once.
 #[derive(Clone, Debug)]
 pub struct Constants {
     pub(super) stages: Vec<Stage>,
-    /// by the number of the value; later values are 0
+    /// for each value the rounded number; 0 for values of later stages
     rounded: Vec<(f64, f64)>,
 }
 
 impl Constants {
-    /// For all parameters in file order, `fixed` ones too (which are not read).
+    /// Computes the constants. `parameters` are all of them in file order, `fixed` ones included (which are
+    /// not read).
     pub fn new(program: &Program, parameters: &[f64]) -> Self {
         let stages = program.stages();
         let inputs = Inputs { parameters: parameters.to_vec(), ..Inputs::default() };
@@ -71,22 +73,22 @@ impl Constants {
         self.stages.get(value.index()).copied().unwrap_or(Stage::Velocity)
     }
 
-    /// A value that depends on parameters alone.
+    /// The number of a value that depends on parameters alone.
     pub fn get(&self, value: Value) -> f64 {
         self.rounded.get(value.index()).map_or(f64::NAN, |numbers| numbers.0)
     }
 
-    /// Such a value; of a pair of sine and cosine both.
+    /// The numbers of such a value; both of a sine-cosine pair.
     pub(super) fn pair(&self, value: Value) -> (f64, f64) {
         self.rounded.get(value.index()).copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
-    /// Whether all that later values need of them is finite.
+    /// Whether all constants that later values use are finite.
     pub fn finite(&self, program: &Program) -> bool {
         program.kept(&self.stages).into_iter().all(|value| self.get(value).is_finite())
     }
 
-    /// The first guard on parameters alone that fails at these: its message, and whether its value is finite.
+    /// The first guard on parameters alone that fails: its message, and whether its value is finite.
     pub fn failure<'p>(&self, program: &'p Program) -> Option<(&'p str, bool)> {
         let early = program
             .guards
@@ -100,41 +102,41 @@ impl Constants {
     }
 }
 
-/// Whether a value does not vanish. A divisor that overflows is large, and what it divides is 0.
+/// Whether a value counts as nonzero. A divisor that overflows is large, and its quotient is 0.
 pub(super) fn holds(value: f64, bound: f64) -> bool {
     value.abs() > bound || value.is_infinite()
 }
 
-/// A check of a prepared routine.
+/// A guard in a prepared routine.
 #[derive(Clone, Debug)]
 struct Check {
     value: usize,
     scale: Option<usize>,
-    /// the number of the guard in the program
+    /// index of the guard in the program
     guard: usize,
 }
 
-/// Some quantities of a program, ready to be evaluated many times at the parameters it was prepared for.
+/// Some quantities of a program, prepared for repeated evaluation with the same parameters.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// what the numbers are before anything is computed: constants, and what depends on parameters alone
+    /// initial content of the numbers: constants, and values that depend on parameters alone
     template: Vec<(f64, f64)>,
-    /// which value of the program each number is
+    /// for each number the value of the program
     values: Vec<Value>,
     inputs: Vec<(usize, Input)>,
-    /// where each result goes, and its operation on results with smaller numbers
+    /// for each step the index of its result, and its operation on results with smaller indices
     steps: Vec<(usize, Operation)>,
     checks: Vec<Check>,
-    /// the results, quantity by quantity, by rows
+    /// indices of the results, quantity by quantity, by rows
     results: Vec<usize>,
-    /// those of them that are not constant
+    /// indices of the results that are not constant
     computed: Vec<usize>,
 }
 
 /// Why a prepared routine has no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failed {
-    /// a value vanishes that must not: the number of its guard in the program
+    /// a value vanishes that must not: index of the guard in the program
     Singular(usize),
     /// a result, or a value that must not vanish, is infinite or not a number
     NotFinite,
@@ -186,28 +188,28 @@ impl Prepared {
         prepared
     }
 
-    /// Goes over to other parameters.
+    /// Replaces the parameters.
     pub fn refresh(&mut self, constants: &Constants) {
         for (number, value) in self.template.iter_mut().zip(&self.values) {
             *number = constants.rounded[value.index()];
         }
     }
 
-    /// How many numbers there are.
+    /// Number of results.
     pub fn len(&self) -> usize {
         self.results.len()
     }
 
-    /// Whether there are none, because the program has none of the quantities.
+    /// Whether there are no results, because the program has none of the quantities.
     pub fn is_empty(&self) -> bool {
         self.results.is_empty()
     }
 
-    /// Computes the quantities; `with` receives each number's index and value.
+    /// Computes the quantities and passes the index and the value of each result to `with`.
     ///
     /// # Errors
     ///
-    /// [`Failed`]
+    /// A guard fails, or a result is not finite: [`Failed`].
     pub fn evaluate(
         &self,
         arguments: &Arguments<'_>,

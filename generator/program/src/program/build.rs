@@ -7,7 +7,7 @@ use super::operation::{Bits, Operation, Stage, Value};
 use hodograph_model::arithmetic::Function;
 use hodograph_model::arithmetic::reproducible;
 
-/// The operations so far.
+/// A program under construction.
 #[derive(Debug, Default)]
 pub struct Builder {
     operations: Vec<Operation>,
@@ -21,17 +21,17 @@ impl Builder {
         self.operations
     }
 
-    /// What a value is.
+    /// The operation of a value.
     pub fn operation(&self, value: Value) -> Operation {
         self.operations[value.index()]
     }
 
-    /// When a value can be computed.
+    /// The stage of a value.
     pub fn stage(&self, value: Value) -> Stage {
         self.stages[value.index()]
     }
 
-    /// The number a value is, if it is one.
+    /// The number of a value, if it is a constant.
     pub fn number(&self, value: Value) -> Option<f64> {
         match self.operation(value) {
             Operation::Constant(bits) => Some(bits.get()),
@@ -39,7 +39,7 @@ impl Builder {
         }
     }
 
-    /// An operation as it is, or the equal one that is there already.
+    /// Appends an operation, unless an equal one exists already.
     pub fn push(&mut self, operation: Operation) -> Value {
         if let Some(&value) = self.known.get(&operation) {
             return value;
@@ -144,7 +144,7 @@ impl Builder {
         }
     }
 
-    /// Sine or cosine out of the pair.
+    /// The sine or the cosine of a value, taken from their common operation.
     pub fn sin_cos(&mut self, sine: bool, a: Value) -> Value {
         let pair = self.push(Operation::SinCos(a));
         self.push(if sine { Operation::Sine(pair) } else { Operation::Cosine(pair) })

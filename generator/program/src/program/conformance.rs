@@ -1,5 +1,5 @@
-//! Checks that a program fits a mechanism: that all inputs, contacts, points and frames exist and all
-//! quantities have their shapes. Without it a derivation of another mechanism would become code that does not
+//! Checks that a program fits a mechanism: all inputs, contacts, points and frames exist, and all quantities
+//! have their shapes. Without this check a derivation of another mechanism would become code that does not
 //! compile.
 
 use super::Program;
@@ -37,7 +37,7 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
     for output in &program.outputs {
         let shape = shape(mechanism, output.quantity);
         let right = match shape {
-            // of a loop with more constraints than it needs all are looked at
+            // an overdetermined loop has a residual for every one of its constraints
             Some((least, 1)) if output.quantity == Quantity::ConstraintResidual && overdetermined => {
                 output.columns == 1 && output.rows >= least && output.rows <= 3 * mechanism.constraints.len()
             }
@@ -54,7 +54,7 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
     Ok(())
 }
 
-/// The shape of a quantity, if the mechanism can have it.
+/// The shape of a quantity; `None` if the mechanism does not have it.
 pub fn shape(mechanism: &Mechanism, quantity: Quantity) -> Option<(usize, usize)> {
     let gap = match quantity {
         Quantity::Contact(index, _) => mechanism.contacts.get(index as usize)?.gap.is_some(),

@@ -10,13 +10,13 @@ use super::passes;
 use super::quantity::Quantity;
 use super::straight_line::Program;
 
-/// Numbers of operations. A fused multiply-add counts as a multiplication and an addition; a negation as
-/// nothing where it is one of a sum, else as an addition.
+/// Numbers of operations. A fused multiply-add counts as a multiplication and an addition. A negation counts
+/// as nothing if it is an operand of a sum, else as an addition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
     /// multiplications
     pub multiplications: usize,
-    /// additions, subtractions and negations
+    /// additions, subtractions and remaining negations
     pub additions: usize,
     /// divisions and reciprocals
     pub divisions: usize,
@@ -24,12 +24,13 @@ pub struct Count {
     pub trigonometric: usize,
     /// other functions
     pub functions: usize,
-    /// those pairs of a multiplication and an addition that are one instruction where the target has it
+    /// pairs of a multiplication and an addition that are a single instruction on targets with fused
+    /// multiply-add
     pub fused: usize,
 }
 
 impl Count {
-    /// All operations; a pair of sine and cosine is one.
+    /// All operations; a sine-cosine pair is one.
     pub fn total(&self) -> usize {
         self.multiplications + self.additions + self.divisions + self.trigonometric + self.functions
     }
@@ -80,7 +81,7 @@ impl fmt::Display for Count {
     }
 }
 
-/// Operations per stage.
+/// Numbers of operations per stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// once, at construction
@@ -92,7 +93,7 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// What an evaluation costs: everything but the work at construction.
+    /// The operations of an evaluation: all but those at construction.
     pub fn evaluation(&self) -> Count {
         let mut count = self.configuration;
         count += self.velocity;
@@ -118,7 +119,7 @@ pub struct Step {
 }
 
 impl Program {
-    /// What a routine for some quantities costs.
+    /// The operations of a routine for some quantities.
     pub fn cost(&self, quantities: &[Quantity]) -> Cost {
         let stages = self.stages();
         let mut cost = Cost::default();
@@ -134,13 +135,13 @@ impl Program {
         cost
     }
 
-    /// Everything that the program computes.
+    /// All quantities that the program computes.
     pub fn quantities(&self) -> Vec<Quantity> {
         self.outputs.iter().map(|output| output.quantity).collect()
     }
 }
 
-/// What the passes do to a derivation, in their order; the first step is the derivation as it comes.
+/// The program after each pass, in order; the first step is the derivation before all passes.
 pub fn trace(derived: &Derived) -> Vec<Step> {
     let step = |pass, program: &Program| Step { pass, cost: program.cost(&program.quantities()) };
     let mut steps = vec![step("none", &lower(derived))];

@@ -12,17 +12,17 @@ use super::solve::Solve;
 pub struct Derived {
     /// the nodes
     pub graph: Graph,
-    /// what they are for
+    /// quantities and their nodes
     pub outputs: Vec<Output<Node>>,
-    /// what must not vanish
+    /// nodes that must not vanish
     pub guards: Vec<Guard<Node>>,
-    /// per contact, in file order
+    /// structure of the reduced matrix per contact, in file order
     pub structures: Vec<Structure>,
-    /// arbitrary states, at which passes weigh what rounding costs; none where it does not matter
+    /// random states at which passes estimate rounding errors; empty if rounding errors do not matter
     pub samples: Vec<Inputs>,
-    /// quantities that go through the passes on their own, so that what they share with others does not
-    /// shape the routines of those
+    /// quantities that pass through the passes separately, so that sharing values with other quantities does
+    /// not change the routines of those
     pub apart: Vec<Derived>,
-    /// that the only output holds systems of equations, which are solved after the passes
+    /// the systems of equations that the only output holds, if any; they are solved after the passes
     pub solve: Option<Solve>,
 }

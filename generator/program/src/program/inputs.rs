@@ -2,7 +2,7 @@
 
 use super::graph::Input;
 
-/// The numbers from outside, each in the unit that the model declares, in file order.
+/// The inputs of a program, each in the unit that the model declares, in file order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inputs {
     /// all parameters, also those that are `fixed` (which are not read)
@@ -23,7 +23,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// One of the numbers; what is not there is not a number.
+    /// The value of an input; NaN if there is none.
     pub fn get(&self, input: Input) -> f64 {
         let (list, index) = match input {
             Input::Time => return self.time,

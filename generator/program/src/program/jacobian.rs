@@ -2,9 +2,10 @@
 //!
 //! The derivatives of nodes with respect to their operands are the edges of a graph from the directions to
 //! the results. Eliminating a node joins every edge into it with every edge out of it; the edges that remain
-//! at the end are the Jacobian. Each order of elimination gives the same numbers: operands first is forward
-//! differentiation, results first is backward differentiation, and an order between both gathers the forces
-//! of a whole branch before they meet the velocities on which they depend.
+//! at the end are the Jacobian. Every order of elimination gives the same numbers. Operands first is forward
+//! differentiation, results first is backward differentiation. A mixed order can be cheaper than both: it
+//! adds up the forces of a whole branch before it multiplies them with the derivatives of the velocities on
+//! which they depend.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,17 +14,17 @@ use super::graph::{Graph, Input, Node, NodeKind};
 use super::operation::Stage;
 use hodograph_model::number::Number;
 
-/// How inputs change along a direction; those not listed do not.
+/// The derivatives of inputs along a direction; inputs that are not listed are constant.
 pub type Direction = Vec<(Input, Node)>;
 
-/// In which order nodes are eliminated.
+/// The order in which nodes are eliminated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// operands before what is made of them: forward differentiation
+    /// operands before the nodes that use them: forward differentiation
     OperandsFirst,
     /// results first: backward differentiation
     ResultsFirst,
-    /// next the node with the fewest pairs of an edge into it and an edge out of it
+    /// next the node with the smallest product of the numbers of edges into it and out of it
     FewestEdges,
 }
 
@@ -35,7 +36,7 @@ pub const ORDERS: [Order; 3] = [Order::OperandsFirst, Order::ResultsFirst, Order
 pub struct Jacobian {
     /// by node, then by direction
     pub rows: Vec<Vec<Node>>,
-    /// operations that eliminating took
+    /// number of operations that the elimination takes
     pub work: usize,
 }
 
@@ -51,9 +52,9 @@ pub fn jacobian(graph: &mut Graph, nodes: &[Node], directions: &[Direction], ord
 
 /// The edges between vertices: directions, then nodes in their order, then results.
 struct Edges {
-    /// per vertex, its derivatives by the vertices before it
+    /// per vertex, its derivatives with respect to earlier vertices
     into: Vec<BTreeMap<usize, Node>>,
-    /// per vertex, the vertices that have a derivative by it
+    /// per vertex, the vertices that have a derivative with respect to it
     out: Vec<BTreeSet<usize>>,
     /// the first vertex that is a node
     nodes: usize,
@@ -105,7 +106,7 @@ impl Edges {
         Edges { into, out, nodes: directions.len(), results }
     }
 
-    /// What decides when a vertex is eliminated: the least first.
+    /// Sorting key: the vertex with the least is eliminated next.
     fn rank(&self, vertex: usize, order: Order) -> (usize, usize) {
         match order {
             Order::OperandsFirst => (0, vertex),
@@ -114,7 +115,7 @@ impl Edges {
         }
     }
 
-    /// Eliminates all nodes; the operations that it takes.
+    /// Eliminates all nodes and returns the number of operations that this takes.
     fn eliminate(&mut self, graph: &mut Graph, order: Order) -> usize {
         let mut stages = Stages::default();
         let mut work = 0;
@@ -152,7 +153,7 @@ impl Edges {
     }
 }
 
-/// Adds a derivative to those that are there; what is 0 is no edge.
+/// Adds a derivative to an edge; an edge whose derivative is 0 is removed.
 fn add(graph: &mut Graph, edges: &mut BTreeMap<usize, Node>, from: usize, slope: Node) {
     let sum = match edges.get(&from) {
         Some(&there) => graph.sum([there, slope]),
@@ -165,7 +166,7 @@ fn add(graph: &mut Graph, edges: &mut BTreeMap<usize, Node>, from: usize, slope:
     }
 }
 
-/// The stages of the nodes of a graph that grows.
+/// The stages of the nodes of a growing graph.
 #[derive(Default)]
 struct Stages(Vec<Stage>);
 
@@ -182,7 +183,8 @@ impl Stages {
         self.0[node.0 as usize] <= Stage::Parameter
     }
 
-    /// Operations per evaluation of a product that is added to what is there: a fused one counts once.
+    /// Number of operations per evaluation of a product that is added to an edge; a fused multiply-add counts
+    /// once.
     fn work(&mut self, graph: &Graph, first: Node, last: Node, there: bool) -> usize {
         if self.is_early(graph, first) && self.is_early(graph, last) {
             return 0;
@@ -191,7 +193,7 @@ impl Stages {
     }
 }
 
-/// Whether it is 1 or -1.
+/// Whether a node is 1 or -1.
 fn is_unit(graph: &Graph, node: Node) -> bool {
     graph.as_number(node).is_some_and(|number| number.is_one() || Number(-number.0.clone()).is_one())
 }
@@ -239,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_depend_on_a_direction_is_0_and_takes_no_work() {
+    fn derivatives_along_unrelated_directions_are_0_and_take_no_work() {
         let mut graph = Graph::new();
         let [x, y, z] = [0, 1, 2].map(|index| graph.input(Input::Coordinate(index)));
         let product = graph.product([x, y]);
@@ -250,9 +252,10 @@ mod tests {
         assert_eq!((found.rows, found.work), (vec![vec![y, x, zero], vec![zero, zero, one]], 0));
     }
 
-    /// A number made of many through a narrow waist, that makes many: the waist is left to the end.
+    /// Many inputs combine to one number, on which many results depend: eliminating that number last is
+    /// cheapest.
     #[test]
-    fn the_order_between_takes_less_work_than_both_ends() {
+    fn a_mixed_order_takes_less_work_than_forward_and_backward() {
         let mut graph = Graph::new();
         let speeds: Vec<Node> = (0..6).map(|index| graph.input(Input::Speed(index))).collect();
         let factors: Vec<Node> = (0..12).map(|index| graph.input(Input::Coordinate(index))).collect();

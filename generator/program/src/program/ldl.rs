@@ -6,13 +6,13 @@ use super::graph::{Graph, Node};
 /// M = P' L D L' P, in an order P that keeps L sparse.
 #[derive(Clone, Debug)]
 pub struct Factor {
-    /// which row of M is eliminated at which step
+    /// row of M that each step eliminates
     order: Vec<usize>,
     /// rows of L below the diagonal, by step; `None`: structurally 0
     lower: Vec<Vec<Option<Node>>>,
     /// 1 / D by step
     inverse: Vec<Node>,
-    /// pivots D with the diagonal entries of M they come from and the row of M, by step
+    /// pivots D, each with the diagonal entry of M from which it is computed and its row of M, by step
     pub pivots: Vec<(Node, Node, usize)>,
 }
 
@@ -49,8 +49,7 @@ pub fn factorise(graph: &mut Graph, matrix: &[Vec<Node>]) -> Factor {
     Factor { order, lower, inverse, pivots }
 }
 
-/// Eliminates first what is coupled to least: minimum degree, later rows first among equals (leaves of a
-/// chain).
+/// The order of elimination by minimum degree; among equals later rows come first (the leaves of a chain).
 fn sparse_order(graph: &Graph, matrix: &[Vec<Node>]) -> Vec<usize> {
     let n = matrix.len();
     let mut coupled: Vec<Vec<bool>> =
@@ -94,7 +93,8 @@ impl Factor {
         y
     }
 
-    /// The order of elimination, and a square block in it: L below the diagonal, -1 / D on it.
+    /// The order of elimination, and a square block in this order: L below the diagonal, -1 / D on the
+    /// diagonal.
     pub fn block(&self, graph: &mut Graph) -> (Vec<usize>, Vec<Vec<Node>>) {
         let zero = graph.integer(0);
         let n = self.order.len();
@@ -120,7 +120,7 @@ impl Factor {
         graph.sum(terms)
     }
 
-    /// M^-1 b from the half-solved vector.
+    /// M^-1 b, from the half-solved vector.
     pub fn finish(&self, graph: &mut Graph, y: &[Node]) -> Vec<Node> {
         let n = y.len();
         let mut x: Vec<Node> = (0..n).map(|i| graph.product([y[i], self.inverse[i]])).collect();

@@ -1,33 +1,34 @@
 //! Orders the operations of a routine so that fewer values are live at a time.
 //!
-//! The depth-first order of a slice computes what is shared where it is used first, and keeps it to the last
-//! use. In a long routine, as the accelerations of an arm, hundreds of values then wait at the same time, and
-//! the compiler stores and loads them. This order is made from the end: of the values whose uses are all
-//! placed, the one comes next that ends most lives and begins fewest. It is taken where it lowers the peak
-//! much. The operations stay the same, and so do the bits.
+//! The depth-first order of a slice computes a shared value at its first use and keeps it until its last. In
+//! a long routine, such as the accelerations of an arm, hundreds of values are then live at the same time,
+//! and the compiler spills them to memory. The order of this module is built backwards: of the values whose
+//! uses are all placed, it places the one that ends most lifetimes and begins fewest. It is used only where
+//! it lowers the peak of live values considerably. The operations stay the same, and so do the bits of the
+//! results.
 
 use super::operation::Value;
 use super::straight_line::Program;
 
-/// Fewer live values than this are no burden.
-const FEW: usize = 64;
-/// The other order is taken where its peak is below this share of the peak, in percent. Close to it the
-/// compiler's own order of instructions decides more.
-const SHARE: usize = 75;
+/// Routines with fewer live values are left as they are.
+const MIN_PEAK: usize = 64;
+/// The backward order is used if its peak is below this percentage of the peak of the first order. Above it
+/// the instruction order of the compiler decides more.
+const MAX_PERCENT: usize = 75;
 
 impl Program {
-    /// The values of `order` (operands before their use) in an order with fewer live values, or as they are.
-    /// `fetched` tells what is only loaded from memory where it is used: inputs, numbers, values known at
-    /// construction.
+    /// The values of `order` (operands before their use), reordered to have fewer live values if that pays.
+    /// `fetched` tells which values are only loaded from memory where they are used: inputs, constants,
+    /// values known at construction.
     pub fn with_few_live(&self, order: &[Value], fetched: impl Fn(Value) -> bool) -> Vec<Value> {
-        let lives = Lives::new(self, order, &fetched);
+        let graph = Uses::new(self, order, &fetched);
         let first: Vec<usize> = (0..order.len()).collect();
-        let peak = lives.peak(&first);
-        if peak < FEW {
+        let peak = graph.peak(&first);
+        if peak < MIN_PEAK {
             return order.to_vec();
         }
-        let other = lives.made_from_the_end();
-        if 100 * lives.peak(&other) < SHARE * peak {
+        let other = graph.backward_order();
+        if 100 * graph.peak(&other) < MAX_PERCENT * peak {
             other.into_iter().map(|place| order[place]).collect()
         } else {
             order.to_vec()
@@ -35,17 +36,17 @@ impl Program {
     }
 }
 
-/// Which values of a list use which, by their places in it.
-struct Lives {
-    /// the places of the operands of each, without repetition
+/// The uses of the values in a list, by their places in it.
+struct Uses {
+    /// the places of the operands of each value, without repetition
     operands: Vec<Vec<usize>>,
-    /// how many others use each
+    /// number of values that use each value
     uses: Vec<usize>,
-    /// whether it takes no register until it is used
+    /// whether a value takes no register before it is used
     fetched: Vec<bool>,
 }
 
-impl Lives {
+impl Uses {
     fn new(program: &Program, order: &[Value], fetched: &impl Fn(Value) -> bool) -> Self {
         let end = order.iter().map(|value| value.index() + 1).max().unwrap_or(0);
         let mut places = vec![None; end];
@@ -87,17 +88,17 @@ impl Lives {
         peak
     }
 
-    /// The order made from the end.
-    fn made_from_the_end(&self) -> Vec<usize> {
+    /// The order built backwards.
+    fn backward_order(&self) -> Vec<usize> {
         let count = self.operands.len();
         let mut left = self.uses.clone();
-        // Results live to the end.
+        // Results are live until the end.
         let mut live: Vec<bool> = left.iter().map(|&uses| uses == 0).collect();
-        // When a value was last asked for: ties go to the latest.
+        // The step in which a value was last used; among equals the latest is preferred.
         let mut asked = vec![0_usize; count];
         let mut ready: Vec<usize> = (0..count).filter(|&place| left[place] == 0).collect();
         let mut order = Vec::with_capacity(count);
-        while let Some(at) = (0..ready.len()).max_by_key(|&at| self.worth(ready[at], &live, &asked)) {
+        while let Some(at) = (0..ready.len()).max_by_key(|&at| self.priority(ready[at], &live, &asked)) {
             let place = ready.swap_remove(at);
             order.push(place);
             live[place] = false;
@@ -114,9 +115,9 @@ impl Lives {
         order
     }
 
-    /// How good it is to place a value next, from the end: what is fetched first, then the lives that it ends
-    /// less those it begins, then the latest asked for.
-    fn worth(&self, place: usize, live: &[bool], asked: &[usize]) -> (isize, usize, usize) {
+    /// The priority of placing a value next, backwards: fetched values first, then the number of lifetimes
+    /// that it ends less the number that it begins, then the latest use.
+    fn priority(&self, place: usize, live: &[bool], asked: &[usize]) -> (isize, usize, usize) {
         if self.fetched[place] {
             return (isize::MAX, 0, place);
         }
@@ -134,12 +135,12 @@ mod tests {
     use crate::program::passes::testing::{random, small};
     use hodograph_model::number::Number;
 
-    /// Every value once, after its operands.
-    fn is_an_order(lives: &Lives, order: &[usize]) -> bool {
+    /// Whether every value occurs once, after its operands.
+    fn is_an_order(graph: &Uses, order: &[usize]) -> bool {
         let mut placed = vec![false; order.len()];
-        order.len() == lives.operands.len()
+        order.len() == graph.operands.len()
             && order.iter().all(|&place| {
-                let ready = lives.operands[place].iter().all(|&operand| placed[operand]);
+                let ready = graph.operands[place].iter().all(|&operand| placed[operand]);
                 ready && !std::mem::replace(&mut placed[place], true)
             })
     }
@@ -153,13 +154,13 @@ mod tests {
         for seed in 0..200 {
             let program = crate::program::lower::lower(&random(seed));
             let order = program.slice(&[Quantity::Forcing]).order;
-            let lives = Lives::new(&program, &order, &|value| is_fetched(&program, value));
-            assert!(is_an_order(&lives, &lives.made_from_the_end()), "{seed}");
+            let graph = Uses::new(&program, &order, &|value| is_fetched(&program, value));
+            assert!(is_an_order(&graph, &graph.backward_order()), "{seed}");
         }
     }
 
-    /// Two sums of the same hundred terms: one after the other all terms wait for the second; together none
-    /// does.
+    /// Two sums of the same hundred terms. Computed one after the other, they keep all terms live; computed
+    /// together, they keep none.
     #[test]
     fn sums_of_the_same_terms_are_made_together() {
         let derived = small(|graph| {
@@ -180,8 +181,8 @@ mod tests {
         let order = program.slice(&[Quantity::Forcing]).order;
         let fetched = |value| is_fetched(&program, value);
         let peak = |order: &[Value]| {
-            let lives = Lives::new(&program, order, &fetched);
-            lives.peak(&(0..order.len()).collect::<Vec<_>>())
+            let graph = Uses::new(&program, order, &fetched);
+            graph.peak(&(0..order.len()).collect::<Vec<_>>())
         };
         let better = program.with_few_live(&order, fetched);
         assert!(peak(&order) > 90 && peak(&better) < 10, "{} {}", peak(&order), peak(&better));

@@ -3,7 +3,7 @@
 //! * Signs are kept beside the values and become additions or subtractions, not multiplications by -1.
 //! * Factors and terms are ordered by stage, so that what depends on parameters alone forms a value of its
 //!   own and is hoisted.
-//! * A divisor that occurs once divides; one that occurs more often is inverted once.
+//! * A divisor that occurs once becomes a division; one that occurs more often is inverted once.
 //! * Sine and cosine of one angle are computed together. The rounding error of a sum of angles is computed
 //!   too, and sine and cosine are corrected by it: absolute angles of long chains would lose digits
 //!   otherwise.
@@ -18,14 +18,14 @@ use super::output::{Guard, Output};
 use super::straight_line::Program;
 use hodograph_model::arithmetic::Function;
 
-/// A value and whether its opposite is meant.
+/// A value with a sign.
 #[derive(Clone, Copy, Debug)]
 struct Signed {
     value: Value,
     negative: bool,
 }
 
-/// The program of a derivation whose graph has been through the passes.
+/// The program of a derivation whose graph has passed through the passes.
 pub fn lower(derived: &Derived) -> Program {
     let roots = derived.outputs.iter().flat_map(|output| output.values.iter().copied());
     let reachable = derived.graph.reachable(roots);
@@ -44,7 +44,7 @@ pub fn lower(derived: &Derived) -> Program {
         .collect();
     let mut guards = Vec::new();
     for guard in derived.guards.iter().filter(|guard| reachable[guard.value.0 as usize]) {
-        // A sign does not matter to a value that must not vanish.
+        // The sign of a guarded value does not matter.
         let value = lowering.signed(guard.value).value;
         let scale = guard.scale.map(|scale| {
             let needed = derived.graph.reachable([scale]);
@@ -60,12 +60,12 @@ struct Lowering<'a> {
     graph: &'a Graph,
     builder: Builder,
     lowered: Vec<Option<Signed>>,
-    /// how many products divide by a node
+    /// number of products that divide by a node
     divisions: HashMap<Node, usize>,
-    /// angles of which both sine and cosine are wanted
+    /// angles of which both sine and cosine are used
     angles: HashSet<Node>,
-    /// what rounding took from sums of angles
-    lost: HashMap<Value, Value>,
+    /// rounding errors of sums of angles, where they are computed
+    rounding_errors: HashMap<Value, Value>,
 }
 
 impl<'a> Lowering<'a> {
@@ -76,11 +76,11 @@ impl<'a> Lowering<'a> {
             lowered: vec![None; graph.kinds().len()],
             divisions: HashMap::new(),
             angles: HashSet::new(),
-            lost: HashMap::new(),
+            rounding_errors: HashMap::new(),
         }
     }
 
-    /// Counts what decides how a node is lowered.
+    /// Counts what determines how nodes are lowered: divisions, and uses of sines and cosines.
     fn survey(&mut self, reachable: &[bool]) {
         let mut functions: HashMap<Node, (bool, bool)> = HashMap::new();
         for (index, form) in self.graph.kinds().iter().enumerate() {
@@ -117,7 +117,7 @@ impl<'a> Lowering<'a> {
 
     /// A lowered node.
     fn signed(&self, node: Node) -> Signed {
-        // Nodes refer to earlier nodes only, and all reachable ones are lowered in order.
+        // Nodes refer to earlier nodes only, and all reachable nodes are lowered in order.
         self.lowered[node.0 as usize].unwrap_or(Signed { value: Value(0), negative: false })
     }
 
@@ -153,7 +153,7 @@ impl<'a> Lowering<'a> {
     /// The terms of a sum in the order in which they are added.
     fn in_order(&self, terms: &[Node]) -> Vec<Signed> {
         let mut terms: Vec<Signed> = terms.iter().map(|&term| self.signed(term)).collect();
-        // Products last within a stage: each then is the product of a fused multiply-add.
+        // Products come last within a stage, so that each becomes the product of a fused multiply-add.
         terms.sort_by_key(|term| {
             (self.builder.stage(term.value), self.is_product(term.value), term.negative, term.value)
         });
@@ -176,7 +176,7 @@ impl<'a> Lowering<'a> {
         self.unfold(sum)
     }
 
-    /// Moves the sign of a negation or of a negative constant out of a value.
+    /// Moves the sign of a negation or of a negative constant from the value to its sign.
     fn unfold(&mut self, signed: Signed) -> Signed {
         match self.builder.operation(signed.value) {
             Operation::Neg(value) => Signed { value, negative: !signed.negative },
@@ -222,7 +222,7 @@ impl<'a> Lowering<'a> {
         self.unfold(Signed { value, negative })
     }
 
-    /// The product of values, those of early stages first; a number multiplies the earliest group.
+    /// The product of values, those of early stages first; a constant multiplies the earliest group.
     fn chain(&mut self, mut values: Vec<Value>) -> Option<Value> {
         values.sort_by_key(|&value| (self.builder.stage(value), value));
         let constants =
@@ -250,20 +250,20 @@ impl<'a> Lowering<'a> {
         Signed { value, negative }
     }
 
-    /// What rounding takes from a sum, exactly (Knuth's two-sum), with what it took from its terms; `None`
-    /// for anything but sums at run time. Follows [`Lowering::sum`], whose values it finds again.
-    fn lost(&mut self, node: Node) -> Option<Value> {
+    /// The exact rounding error of a sum (Knuth's two-sum), plus those of its terms; `None` for anything but
+    /// sums at run time. Follows [`Lowering::sum`], whose values it finds again.
+    fn rounding_error(&mut self, node: Node) -> Option<Value> {
         let NodeKind::Sum(terms) = self.graph.kind(node) else { return None };
         let result = self.signed(node);
         if self.builder.stage(result.value) <= Stage::Parameter {
             return None;
         }
-        if let Some(&known) = self.lost.get(&result.value) {
+        if let Some(&known) = self.rounding_errors.get(&result.value) {
             return Some(known);
         }
         let mut low = None;
         for &term in terms {
-            if let Some(lost) = self.lost(term) {
+            if let Some(lost) = self.rounding_error(term) {
                 let negative = self.signed(term).negative != result.negative;
                 low = Some(self.gather(low, lost, negative));
             }
@@ -290,7 +290,7 @@ impl<'a> Lowering<'a> {
             low = Some(self.gather(low, error, sum.negative != result.negative));
         }
         if let Some(low) = low {
-            self.lost.insert(result.value, low);
+            self.rounding_errors.insert(result.value, low);
         }
         low
     }
@@ -304,9 +304,8 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Sine or cosine of a sum that lost something: of `a + e` they are `sin a + e cos a` and `cos a - e sin
-    /// a`.
-    fn restored(&mut self, sine: bool, angle: Value, lost: Value) -> Value {
+    /// Sine or cosine of a sum `a` with the rounding error `e`: `sin a + e cos a` and `cos a - e sin a`.
+    fn corrected(&mut self, sine: bool, angle: Value, lost: Value) -> Value {
         let (s, c) = (self.builder.sin_cos(true, angle), self.builder.sin_cos(false, angle));
         if sine {
             let part = self.builder.mul(lost, c);
@@ -326,9 +325,9 @@ impl<'a> Lowering<'a> {
         let argument = self.signed(node);
         let constant = self.builder.stage(argument.value) == Stage::Constant;
         let round = matches!(function, Function::Sin | Function::Cos);
-        if let Some(lost) = Some(node).filter(|_| round).and_then(|node| self.lost(node)) {
+        if let Some(lost) = Some(node).filter(|_| round).and_then(|node| self.rounding_error(node)) {
             let sine = function == Function::Sin;
-            let value = self.restored(sine, argument.value, lost);
+            let value = self.corrected(sine, argument.value, lost);
             return Signed { value, negative: sine && argument.negative };
         }
         let (value, negative) = match function {
@@ -389,8 +388,8 @@ mod tests {
     #[test]
     fn sines_of_sums_are_as_good_as_sines() {
         let program = lower(&angles());
-        // Coordinates are integers of 53 bits in these units; their sums are longer, and doubles must round
-        // them.
+        // Coordinates are integers of 53 bits in this unit; their sums have more bits and are rounded in
+        // doubles.
         let unit = 2f64.powi(-48);
         let (mut random, mut rounded) = (hodograph_random::Random::new(1), 0);
         for _ in 0..200 {

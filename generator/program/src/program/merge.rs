@@ -7,7 +7,7 @@ use super::output::{Guard, Output};
 use super::straight_line::Program;
 
 impl Program {
-    /// Adds what another program of the same mechanism computes.
+    /// Adds the quantities of another program of the same mechanism.
     pub fn append(&mut self, other: &Program) {
         let mut places: HashMap<Operation, Value> = HashMap::new();
         for (index, &operation) in self.operations.iter().enumerate() {

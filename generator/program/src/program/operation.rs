@@ -8,7 +8,7 @@ use hodograph_model::arithmetic::Function;
 pub struct Value(pub u32);
 
 impl Value {
-    /// Its index into [`super::Program::operations`].
+    /// The index into [`super::Program::operations`].
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -35,7 +35,7 @@ impl Bits {
 pub enum Operation {
     /// a number
     Constant(Bits),
-    /// a number from outside
+    /// an input
     Input(Input),
     /// -a
     Neg(Value),
@@ -68,7 +68,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// The values it needs.
+    /// The operands.
     pub fn operands(self) -> impl Iterator<Item = Value> {
         use Operation::*;
         let operands = match self {
@@ -103,7 +103,7 @@ impl Operation {
     }
 }
 
-/// When a value can be computed at the earliest. Later stages include earlier ones.
+/// The earliest stage at which a value can be computed. Later stages include earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// at build time
@@ -117,7 +117,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// The stage of a number from outside.
+    /// The stage of an input.
     pub fn of_input(input: Input) -> Self {
         match input {
             Input::Parameter(_) => Stage::Parameter,
@@ -126,7 +126,7 @@ impl Stage {
         }
     }
 
-    /// The stage of an operation on operands of known stage.
+    /// The stage of an operation whose operands have known stages.
     pub fn of(operation: Operation, mut stage: impl FnMut(Value) -> Stage) -> Self {
         match operation {
             Operation::Constant(_) => Stage::Constant,

@@ -4,7 +4,7 @@ use super::inputs::Inputs;
 use super::operation::{Operation, Value};
 use hodograph_model::arithmetic::Arithmetic;
 
-/// The result of an operation on earlier values; of a sine-cosine pair both, else the second is 0.
+/// The result of an operation on earlier values; both numbers of a sine-cosine pair, else the second is 0.
 pub fn operate<N: Arithmetic>(
     operation: Operation,
     inputs: &Inputs,

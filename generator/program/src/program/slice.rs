@@ -1,24 +1,23 @@
-//! Selects the operations of a program that a routine needs, in an order in which few values are live at a
-//! time.
+//! Selects the operations that a routine needs, in an order in which few values are live at a time.
 
 use super::operation::{Operation, Stage, Value};
 use super::output::{Guard, Output};
 use super::quantity::Quantity;
 use super::straight_line::Program;
 
-/// What a set of quantities needs.
+/// The operations that a set of quantities needs.
 #[derive(Clone, Debug)]
 pub struct Slice<'a> {
-    /// the quantities, in the order asked for
+    /// the quantities, in the order given
     pub outputs: Vec<&'a Output>,
-    /// the guards whose value belongs to the slice
+    /// the guards of values that the slice computes
     pub guards: Vec<&'a Guard>,
     /// the values needed, operands before their use
     pub order: Vec<Value>,
 }
 
 impl Program {
-    /// What the given quantities need; those that the program has not are left out.
+    /// The slice of the given quantities; quantities that the program does not have are left out.
     pub fn slice(&self, quantities: &[Quantity]) -> Slice<'_> {
         let outputs: Vec<&Output> = quantities.iter().filter_map(|&quantity| self.output(quantity)).collect();
         let mut visit = Visit { program: self, seen: vec![false; self.operations.len()], order: Vec::new() };
@@ -35,7 +34,8 @@ impl Program {
         }
         let mut guards: Vec<&Guard> =
             self.guards.iter().filter(|guard| visit.seen[guard.value.index()]).collect();
-        // What a value is computed from is checked before it: the first guard to fail names the cause.
+        // A guard is checked before the guards of values computed from its value: the first to fail names the
+        // cause.
         guards.sort_by_key(|guard| guard.value);
         for guard in &guards {
             if let Some(scale) = guard.scale {
@@ -45,13 +45,13 @@ impl Program {
         Slice { outputs, guards, order: visit.order }
     }
 
-    /// When both the value and the scale of a guard are known.
+    /// The stage at which both the value and the scale of a guard are known.
     pub fn guard_stage(&self, guard: &Guard, stages: &[Stage]) -> Stage {
         let stage = |value: Value| stages.get(value.index()).copied().unwrap_or(Stage::Velocity);
         guard.scale.map(stage).into_iter().fold(stage(guard.value), Stage::max)
     }
 
-    /// Values that depend on parameters alone and are used later, in order.
+    /// Values that depend on parameters alone and are used at later stages, in order.
     pub fn kept(&self, stages: &[Stage]) -> Vec<Value> {
         let is_kept = |value: Value| {
             let parameter_only = stages.get(value.index()) == Some(&Stage::Parameter);

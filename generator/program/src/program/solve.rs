@@ -1,26 +1,27 @@
 //! Appends the solution of systems of equations to a program: M X = -B for the columns of B, with the factor
 //! of M.
 //!
-//! The columns are solved after all passes, each by the same operations in the same order. So a column costs
-//! no work of the passes, and emitted code may take several columns at a time (`emit/lanes.rs`).
+//! The columns are solved after all passes, each by the same operations in the same order. So a further
+//! column takes no time in the passes, and emitted code may solve several columns at a time
+//! (`emit/lanes.rs`).
 
 use super::build::Builder;
 use super::operation::{Operation, Value};
 use super::output::{Guard, Output};
 use super::straight_line::Program;
 
-/// What a solution is made of. The only output of the program holds, row by row in the order of elimination,
-/// `held` columns that stay as they are, the columns of B, and a square block: the entries of L below the
-/// diagonal of M = L D L^T, on the diagonal -1 / D.
+/// The layout of a system of equations. The only output of the program holds, row by row in the order of
+/// elimination, `held` columns that stay as they are, the columns of B, and a square block: below the
+/// diagonal the entries of L of M = L D L^T, on the diagonal -1 / D.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Solve {
-    /// which row of M is eliminated at which step
+    /// row of M that each step eliminates
     pub order: Vec<usize>,
-    /// columns before those of B
+    /// number of columns before those of B
     pub held: usize,
 }
 
-/// The program with the solution in the place of its output.
+/// The program with the solution in place of its output.
 pub fn solved(program: Program, solve: Option<&Solve>) -> Program {
     let (Some(solve), [output]) = (solve, &program.outputs[..]) else { return program };
     let rows = solve.order.len();
@@ -43,14 +44,15 @@ pub fn solved(program: Program, solve: Option<&Solve>) -> Program {
         if column >= solve.held {
             let first = mirrors(&single, column - solve.held).len();
             for row in 0..rows {
-                x[row] = (0..row).fold(x[row], |sum, at| less(&mut builder, sum, factor(row, at), x[at]));
+                x[row] =
+                    (0..row).fold(x[row], |sum, at| sub_product(&mut builder, sum, factor(row, at), x[at]));
             }
             for (row, value) in x.iter_mut().enumerate().skip(first) {
                 *value = builder.mul(factor(row, row), *value);
             }
             for row in (first..rows).rev() {
-                x[row] =
-                    (row + 1..rows).fold(x[row], |sum, at| less(&mut builder, sum, factor(at, row), x[at]));
+                x[row] = (row + 1..rows)
+                    .fold(x[row], |sum, at| sub_product(&mut builder, sum, factor(at, row), x[at]));
             }
         }
         found.push(x);
@@ -77,7 +79,7 @@ pub fn solved(program: Program, solve: Option<&Solve>) -> Program {
     Program { operations: builder.finish(), outputs, guards, structures: program.structures }
 }
 
-/// A right side that is a number in one row and 0 in all others.
+/// A right side with one nonzero entry: its row and its number.
 #[derive(Clone, Copy, PartialEq)]
 struct Single {
     row: usize,
@@ -85,7 +87,7 @@ struct Single {
 }
 
 impl Single {
-    /// `entries`: the numbers of the rows; `None` where an entry is none.
+    /// `entries`: for each row its entry, `None` if it is not a constant.
     fn of(entries: impl Iterator<Item = Option<f64>>) -> Option<Self> {
         let mut found = None;
         for (row, entry) in entries.enumerate() {
@@ -98,17 +100,18 @@ impl Single {
     }
 }
 
-/// The inverse of M is symmetric, so that its entry in the column of one single number is that in the column
-/// of another, transposed. For the first rows of a column, while this holds: in which other column the entry
-/// is, and in which row of it. Both are computed from the last row on.
+/// The inverse of M is symmetric: if the right sides of two columns each have a single nonzero entry with the
+/// same number, an entry of one solution equals the transposed entry of the other. For the first rows of a
+/// column, as long as this holds: the other column, and the row in it. Both columns are computed from the
+/// last row on.
 fn mirrors(single: &[Option<Single>], column: usize) -> Vec<(usize, usize)> {
     let Some(own) = single[column] else { return Vec::new() };
     let other = |row: usize| single.iter().position(|&other| other == Some(Single { row, ..own }));
     (0..own.row).map_while(|row| Some((other(row)?, own.row))).collect()
 }
 
-/// sum - factor * value; what is 0 takes no operation.
-fn less(builder: &mut Builder, sum: Value, factor: Value, value: Value) -> Value {
+/// sum - factor * value, without operations if the product is 0.
+fn sub_product(builder: &mut Builder, sum: Value, factor: Value, value: Value) -> Value {
     let is_zero = |value| builder.number(value) == Some(0.0);
     match (is_zero(sum), is_zero(factor) || is_zero(value)) {
         (_, true) => sum,
@@ -133,8 +136,8 @@ mod tests {
     use super::*;
     use crate::interpret::Evaluator;
 
-    /// M X = -B with a matrix of four rows, whose second row is coupled to the first alone; `held` is a
-    /// column that stays. Three columns of B are columns of the identity matrix, so that entries of X are
+    /// M X = -B with a matrix of four rows whose second row is coupled to the first only; `held` is a column
+    /// that stays. Three columns of B are columns of the identity matrix, so that some entries of X are
     /// equal.
     #[test]
     fn the_solution_satisfies_the_equations() {
@@ -189,7 +192,7 @@ mod tests {
                 assert!((product + of_b[column]).abs() < 1e-14, "{row} {column}: {product}");
             }
         }
-        // by row of M and column of X: the second row of M is eliminated first
+        // by row of M and column of X; the second row of M is eliminated first
         let entry = |row: usize, column: usize| program.outputs[0].values[row * 6 + column];
         assert_eq!((entry(1, 2), entry(1, 5)), (entry(2, 4), entry(0, 4)));
     }

@@ -9,16 +9,16 @@ use super::quantity::{Quantity, Structure};
 pub struct Program {
     /// the operations; [`Value`] is an index into them
     pub operations: Vec<Operation>,
-    /// what they are for, each quantity at most once
+    /// the quantities and their values, each quantity at most once
     pub outputs: Vec<Output>,
-    /// what must not vanish
+    /// values that must not vanish
     pub guards: Vec<Guard>,
     /// structure of the reduced matrix per contact, in file order
     pub structures: Vec<Structure>,
 }
 
 impl Program {
-    /// What a value is.
+    /// The operation of a value.
     pub fn operation(&self, value: Value) -> Operation {
         self.operations[value.index()]
     }

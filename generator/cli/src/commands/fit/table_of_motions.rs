@@ -10,25 +10,25 @@ use nalgebra::DMatrix;
 use crate::stop::{Outcome, Stop};
 
 /// The largest file, in bytes.
-const MOST: u64 = 1 << 30;
+const MAX_BYTES: u64 = 1 << 30;
 
 /// Measured motions.
 pub struct Motions {
     pub trajectories: Vec<Trajectory>,
-    /// the quantities that are compared: numbers among coordinates, then independent speeds
+    /// the quantities that are compared: indices into coordinates followed by independent speeds
     pub measured: Vec<usize>,
 }
 
-/// What a column holds.
+/// The content of a column.
 #[derive(Clone, Copy, PartialEq)]
 enum Column {
     Time,
     Trajectory,
-    /// a number among coordinates, then independent speeds
+    /// an index into coordinates followed by independent speeds
     State(usize),
 }
 
-/// A row: its line, trajectory, time, and the numbers of its columns of the state; NaN where a cell is empty.
+/// A row: its line, trajectory, time, and the values of its state columns; NaN for an empty cell.
 struct Row {
     line: u64,
     trajectory: String,
@@ -37,7 +37,8 @@ struct Row {
 }
 
 impl Motions {
-    /// Reads motions; `start` is the state of what has no column. Without `outputs` all columns of the state are compared.
+    /// Reads motions. `start` is the state of quantities without a column. Without `outputs` all columns of
+    /// the state are compared.
     ///
     /// # Errors
     ///
@@ -49,7 +50,7 @@ impl Motions {
         outputs: &[String],
     ) -> Outcome<Self> {
         let size = std::fs::metadata(path).map_err(|error| Stop::unreadable(path, &error))?.len();
-        if size > MOST {
+        if size > MAX_BYTES {
             return Err(Stop::Call(format!("{} is larger than 1 GiB", path.display())));
         }
         let wrong = |what: String| Stop::Call(format!("{}: {what}", path.display()));
@@ -62,7 +63,7 @@ impl Motions {
         let columns = columns.map_err(wrong)?;
         for (place, column) in columns.iter().enumerate() {
             if columns[..place].contains(column) {
-                return Err(wrong(format!("the column `{}` stands twice", &heads[place])));
+                return Err(wrong(format!("the column `{}` occurs twice", &heads[place])));
             }
         }
         if !columns.contains(&Column::Time) {
@@ -102,7 +103,7 @@ impl Motions {
             if trajectories.iter().any(known) {
                 let line = rows[from].line;
                 return Err(wrong(format!(
-                    "line {line}: trajectory {name} began before: its rows must stand together"
+                    "line {line}: trajectory {name} has rows in two places: keep its rows together"
                 )));
             }
             let rows = &rows[from..from + count];
@@ -115,13 +116,26 @@ impl Motions {
         Ok(Motions { trajectories, measured })
     }
 
-    /// The place of a quantity among those that are compared.
+    /// The names of the quantities that are compared.
+    pub fn names(&self, mechanism: &InterpretedMechanism) -> Vec<String> {
+        let count = mechanism.count(ComponentKind::Coordinate);
+        let name = |index: &usize| {
+            let component = match index.checked_sub(count) {
+                Some(speed) => mechanism.component(ComponentKind::Speed, speed),
+                None => mechanism.component(ComponentKind::Coordinate, *index),
+            };
+            component.map_or_else(String::new, |component| component.name.to_owned())
+        };
+        self.measured.iter().map(name).collect()
+    }
+
+    /// The index of a quantity among those that are compared.
     pub fn place(&self, mechanism: &InterpretedMechanism, name: &str) -> Option<usize> {
         let index = index_of(mechanism, name)?;
         self.measured.iter().position(|other| *other == index)
     }
 
-    /// The standard deviation of each column over all motions; 1 where nothing changes.
+    /// The standard deviation of each column over all motions; 1 for a constant column.
     pub fn deviations(&self) -> Vec<f64> {
         let deviation = |column: usize| {
             let all = self

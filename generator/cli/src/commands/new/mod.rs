@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// A model to begin with.
+/// A model to start from.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Template {
     /// a rod on a pivot whose tip strikes a wall: point, normal and gap of the contact are written out
@@ -43,7 +43,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] where the name is none; [`Stop::Fault`] where the file exists or cannot be written.
+/// [`Stop::Call`] if the name is not allowed; [`Stop::Fault`] if the file exists or cannot be written.
 pub fn run(arguments: &Arguments) -> Outcome {
     let given = &arguments.name;
     let stem = match given.extension() {
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     Ok(())
 }
 
-/// The names of file and mechanism: `my_pendulum` and `MyPendulum`, from either of them.
+/// The names of the file and the mechanism: `my_pendulum` and `MyPendulum`; either may be given.
 fn names(given: &str) -> Option<(String, String)> {
     let known = given.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     if !known || !given.starts_with(|letter: char| letter.is_ascii_alphabetic()) {

@@ -31,10 +31,10 @@ pub fn figure(recorded: &Recorded) -> Figure {
     figure
 }
 
-/// What a panel shows, and in which unit.
+/// The title of a panel and its unit.
 type Kind<'a> = (&'a str, &'a str);
 
-/// Curves of the same kind and unit together, in the order in which each first appears.
+/// The curves grouped by kind and unit, in the order of their first occurrence.
 fn grouped<'a>(curves: impl Iterator<Item = &'a Curve>) -> Vec<(Kind<'a>, Vec<&'a Curve>)> {
     let mut groups: Vec<(Kind<'a>, Vec<&'a Curve>)> = Vec::new();
     for curve in curves {

@@ -13,23 +13,27 @@ use crate::stop::{Outcome, Stop};
 /// A function of time.
 type OfTime = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
-/// Functions of inputs by their numbers.
+/// Functions of time with the indices of their inputs.
 type Functions = Vec<(usize, OfTime)>;
 
-/// What drives the inputs.
-pub struct Driven {
+/// The functions that drive the inputs.
+pub struct InputFunctions {
     /// the functions
     pub drive: Drive,
     /// the times of the rows of a table, at which the rates of inputs jump
     pub breaks: Vec<f64>,
 }
 
-/// What drives the inputs; none where nothing was asked for.
+/// The functions that drive the inputs; `None` if no option gives any.
 ///
 /// # Errors
 ///
 /// `unknown_name`, and [`Stop::Call`] for expressions and files that cannot be read.
-pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>) -> Outcome<Option<Driven>> {
+pub fn drive(
+    mechanism: &Mechanism,
+    expressions: &[String],
+    file: Option<&Path>,
+) -> Outcome<Option<InputFunctions>> {
     let mut functions = Functions::new();
     let mut breaks = Vec::new();
     if let Some(path) = file {
@@ -61,7 +65,7 @@ pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>)
             }
         }
     }));
-    Ok(Some(Driven { drive, breaks }))
+    Ok(Some(InputFunctions { drive, breaks }))
 }
 
 fn index(mechanism: &Mechanism, name: &str) -> Result<usize, Failure> {
@@ -76,7 +80,7 @@ fn index(mechanism: &Mechanism, name: &str) -> Result<usize, Failure> {
 fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Functions)> {
     let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
     let wrong = |line: usize, message: &str| Stop::Call(format!("{}:{line}: {message}", path.display()));
-    // Some programs put a mark of the encoding first.
+    // Some programs write a byte order mark first.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let mut rows = rows(text).map(|(line, row)| match row {
         Ok(row) => Ok((line, row)),
@@ -107,7 +111,7 @@ fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Function
         for (column, cell) in columns.iter_mut().zip(&row) {
             match cell.parse::<f64>() {
                 Ok(value) if value.is_finite() => column.push(value),
-                _ => return Err(wrong(line, &format!("`{cell}` is no finite number"))),
+                _ => return Err(wrong(line, &format!("`{cell}` is not a finite number"))),
             }
         }
         if let (Some(before), Some(&time)) = (before, columns[0].last())
@@ -140,7 +144,7 @@ fn rows(text: &str) -> impl Iterator<Item = (usize, csv::Result<csv::StringRecor
     let mut row = csv::StringRecord::new();
     std::iter::from_fn(move || {
         loop {
-            // Empty lines before a row are read with it.
+            // The reader skips empty lines before a row; count them.
             let begin = reader.position().byte() as usize;
             let blank = text[begin..].chars().take_while(|c| matches!(c, '\r' | '\n')).filter(|c| *c == '\n');
             let line = reader.position().line() as usize + blank.count();
@@ -154,7 +158,7 @@ fn rows(text: &str) -> impl Iterator<Item = (usize, csv::Result<csv::StringRecor
     })
 }
 
-/// The value at a time.
+/// The linear interpolation of a table at a time.
 fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
     let next = times.partition_point(|&time| time <= t);
     let last = times.len() - 1;

@@ -11,7 +11,7 @@ use crate::json::answer::Answer;
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// How lines are written.
+/// The format of lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Format {
     /// tables of states and events, and a summary
@@ -29,7 +29,7 @@ struct Sample<'a> {
     u: Named<'a, f64>,
 }
 
-/// An event; what does not belong to it is left out.
+/// An event; fields that do not apply to it are left out.
 #[derive(Serialize)]
 struct Line<'a> {
     t: f64,
@@ -62,7 +62,7 @@ struct Line<'a> {
     u: Named<'a, f64>,
 }
 
-/// What one of several contacts did that were struck together.
+/// The part of one of several contacts in a simultaneous impact.
 #[derive(Serialize)]
 struct ShareOf<'a> {
     contact: &'a str,
@@ -80,21 +80,21 @@ pub struct Lines<'m> {
     mechanism: &'m InterpretedMechanism,
     format: Format,
     summary: Summary,
-    /// whether the motion is wanted where nobody reads the lines any more
-    wanted: bool,
+    /// whether the simulation continues after the reader of the lines has closed the pipe
+    to_the_end: bool,
     reader_gone: bool,
 }
 
 impl<'m> Lines<'m> {
-    /// Begins; CSV has a head. `wanted` says that the motion is to be followed to its end even where the
-    /// reader of the lines leaves: files are to show all of it.
+    /// Starts the output; CSV begins with a header. With `to_the_end` the simulation continues even if the
+    /// reader of the lines closes the pipe, since files shall contain all of the motion.
     ///
     /// # Errors
     ///
     /// As [`output::text`].
-    pub fn new(mechanism: &'m InterpretedMechanism, format: Format, wanted: bool) -> Outcome<Self> {
+    pub fn new(mechanism: &'m InterpretedMechanism, format: Format, to_the_end: bool) -> Outcome<Self> {
         let summary = Summary::default();
-        let mut lines = Lines { mechanism, format, summary, wanted, reader_gone: false };
+        let mut lines = Lines { mechanism, format, summary, to_the_end, reader_gone: false };
         if format == Format::Csv {
             let names = |kind| {
                 (0..mechanism.count(kind))
@@ -128,12 +128,12 @@ impl<'m> Lines<'m> {
         Ok(())
     }
 
-    /// The energies at the time reached.
+    /// The energies at the current time.
     pub fn energy(&mut self, account: EnergyAccount) {
         self.summary.energy(account);
     }
 
-    /// Writes what was gathered.
+    /// Writes the summary of a table.
     ///
     /// # Errors
     ///
@@ -145,13 +145,14 @@ impl<'m> Lines<'m> {
         }
     }
 
-    /// Writes a line; where the reader has left, nothing, as long as the motion is wanted nevertheless.
+    /// Writes a line. If the reader has closed the pipe, this is an error unless the simulation shall
+    /// continue.
     fn write(&mut self, line: &str) -> Outcome {
         if self.reader_gone {
             return Ok(());
         }
         match output::line(line) {
-            Err(Stop::ReaderGone) if self.wanted => {
+            Err(Stop::ReaderGone) if self.to_the_end => {
                 self.reader_gone = true;
                 Ok(())
             }
@@ -159,7 +160,7 @@ impl<'m> Lines<'m> {
         }
     }
 
-    /// Something that happened.
+    /// Writes an event.
     ///
     /// # Errors
     ///
@@ -210,9 +211,9 @@ impl<'m> Lines<'m> {
         };
         match &event.kind {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
-                self.struck(event, struck, &mut line)?;
+                self.collision(event, struck, &mut line)?;
             }
-            EventKind::SimultaneousCollision(struck) => self.together(event, struck, &mut line),
+            EventKind::SimultaneousCollision(struck) => self.simultaneous(event, struck, &mut line),
             EventKind::Contact { mode, selection } => {
                 certain(selection);
                 line.mode = Some(mode.name());
@@ -234,8 +235,13 @@ impl<'m> Lines<'m> {
         json(&line)
     }
 
-    /// What belongs to an impact: the fields of `collide`, and the speeds before as `u`.
-    fn struck<'a>(&'a self, event: &'a Event, struck: &'a CollisionRecord, line: &mut Line<'a>) -> Outcome {
+    /// The fields of an impact: those of `collide`, and the speeds before as `u`.
+    fn collision<'a>(
+        &'a self,
+        event: &'a Event,
+        struck: &'a CollisionRecord,
+        line: &mut Line<'a>,
+    ) -> Outcome {
         line.answer = Some(Answer::try_from(&struck.outcome.impact)?);
         line.u_after = Some(self.after(event));
         line.kinetic_energy_change = Some(struck.outcome.energy_change + 0.0);
@@ -245,8 +251,8 @@ impl<'m> Lines<'m> {
         Ok(())
     }
 
-    /// What belongs to an impact of several contacts, and the speeds before as `u`.
-    fn together<'a>(&'a self, event: &'a Event, struck: &'a SimultaneousCollision, line: &mut Line<'a>) {
+    /// The fields of a simultaneous impact, and the speeds before as `u`.
+    fn simultaneous<'a>(&'a self, event: &'a Event, struck: &'a SimultaneousCollision, line: &mut Line<'a>) {
         let shares = struck.shares.iter().map(|share| ShareOf {
             contact: self
                 .mechanism

@@ -1,49 +1,48 @@
-//! The files beside the lines of `simulate`: a figure, a page, and a recording for viewers of robots.
+//! The optional files of `simulate`: a figure, a page, and a recording for robot viewers.
 
 use std::path::{Path, PathBuf};
 
-use hodograph_animation::{Recording, Setup};
+use hodograph_animation::{Recording, Setup, mcap_file};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, Simulation};
 
 use super::figure::figure;
-use crate::answers::is_read;
+use crate::answers::is_terminal;
 use crate::json::state::State;
+use crate::output;
 use crate::plot::file::Format;
 use crate::stop::{Outcome, Stop};
-use crate::{mcap_file, output};
 
-/// The files that are asked for.
+/// The options for these files.
 #[derive(Clone, Debug, clap::Args)]
 pub struct PictureFiles {
     /// a figure of coordinates, speeds, gaps and contact forces over time, as SVG or PNG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// a page for browsers in which the mechanism moves: needs neither scripts from elsewhere nor a network
+    /// a page for browsers with an animation of the mechanism; it needs no network and no other files
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// a recording for viewers of robots, such as Foxglove: frames, points, contact forces, impulses,
-    /// events, curves
+    /// a recording for robot viewers such as Foxglove: frames, points, contact forces, impulses, events,
+    /// curves
     #[arg(long, value_name = "FILE")]
     mcap: Option<PathBuf>,
 }
 
 impl PictureFiles {
-    /// Refuses before the simulation what could not be written after it, or what would be written over one
-    /// of the files that are read.
+    /// Checks before the simulation that the files can be written, and that none of them is an input file.
     ///
     /// # Errors
     ///
-    /// [`Stop::Call`] where a figure has no known format, or two files are one; [`Stop::Fault`] where a file
+    /// [`Stop::Call`] if a figure has no known format, or two files are the same; [`Stop::Fault`] if a file
     /// cannot be written.
     pub fn check(&self, inputs: &[PathBuf]) -> Outcome {
         Format::of(None, self.plot.as_deref())?;
         let files = self.files();
         files.iter().try_for_each(|path| output::check(path))?;
-        output::apart(&files, inputs)
+        output::check_distinct(&files, inputs)
     }
 
-    /// Whether any file is asked for.
+    /// Whether any of the files is requested.
     pub fn wanted(&self) -> bool {
         !self.files().is_empty()
     }
@@ -52,7 +51,7 @@ impl PictureFiles {
         [&self.plot, &self.html, &self.mcap].into_iter().filter_map(Option::as_deref).collect()
     }
 
-    /// Refuses times that a recording cannot hold.
+    /// Refuses times that a recording cannot represent.
     ///
     /// # Errors
     ///
@@ -69,15 +68,15 @@ impl PictureFiles {
     }
 }
 
-/// What is kept of a motion for these files.
+/// The recording of a motion for these files.
 pub struct Pictures<'m> {
     recording: Option<Recording<'m>>,
-    /// is anything kept?
+    /// whether any state is recorded
     begun: bool,
 }
 
 impl<'m> Pictures<'m> {
-    /// Nothing yet; `setup` says of which motion.
+    /// An empty recording; `setup` describes the motion.
     pub fn new(
         files: &PictureFiles,
         mechanism: &'m InterpretedMechanism,
@@ -90,7 +89,7 @@ impl<'m> Pictures<'m> {
         Pictures { recording, begun: false }
     }
 
-    /// The state of a simulation.
+    /// Records the current state of a simulation.
     pub fn add(&mut self, simulation: &Simulation<'_>) {
         self.begun = true;
         if let Some(recording) = &mut self.recording {
@@ -98,7 +97,7 @@ impl<'m> Pictures<'m> {
         }
     }
 
-    /// Something that happened, where the simulation now is: the states before and after it.
+    /// Records an event at the current time, with the states before and after it.
     pub fn event(&mut self, event: &Event, simulation: &Simulation<'_>) {
         if let Some(recording) = &mut self.recording {
             recording.before(event, simulation);
@@ -107,13 +106,13 @@ impl<'m> Pictures<'m> {
         }
     }
 
-    /// Writes the files and returns how the simulation ended, or why a file could not be written. Where the
-    /// motion never began, files stay as they are.
+    /// Writes the files and returns how the simulation ended, or why a file could not be written. If nothing
+    /// was recorded, existing files stay as they are.
     ///
     /// # Errors
     ///
-    /// That of the simulation; else that of the first file that cannot be written. The others are told on
-    /// standard error.
+    /// The error of the simulation, else that of the first file that cannot be written. The others are
+    /// reported on standard error.
     pub fn save(self, files: &PictureFiles, simulated: Outcome) -> Outcome {
         let Some(recording) = self.recording.filter(|_| self.begun) else { return simulated };
         let recorded = recording.finish();
@@ -132,7 +131,7 @@ impl<'m> Pictures<'m> {
             outcomes.push(bytes.and_then(|bytes| output::file(path, &bytes)));
         }
         let mut failed = outcomes.into_iter().filter_map(Result::err).peekable();
-        if failed.peek().is_none() && is_read() {
+        if failed.peek().is_none() && is_terminal() {
             let written = [&files.plot, &files.html, &files.mcap].into_iter().flatten();
             written.for_each(|path| output::say(format_args!("wrote {}", path.display())));
         }

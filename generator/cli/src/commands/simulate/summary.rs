@@ -1,15 +1,15 @@
-//! Writes a motion for a person: states and events as tables, and what came of them.
+//! Writes a motion as tables of states and events, and a summary.
 
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_simulation::{EnergyAccount, Event, EventKind};
 
 use crate::table::{Table, number, with_unit};
 
-/// At most this many states are shown, and this many events.
+/// The largest numbers of states and events in the tables.
 const STATES: usize = 21;
 const EVENTS: usize = 40;
 
-/// A motion as far as it is told.
+/// The part of a motion that the summary reports.
 #[derive(Debug, Default)]
 pub struct Summary {
     /// the states at steps: time, coordinates, speeds
@@ -111,7 +111,7 @@ impl Summary {
         format!("\nEvents\n\n{}{more}", table.text("  "))
     }
 
-    /// How many events there were, and whether it came to rest.
+    /// The number of events, and whether the mechanism is at rest at the end.
     fn outcome(&self) -> String {
         let mut counts: Vec<(&str, usize)> = Vec::new();
         for line in self.events.iter().filter(|line| !["rest", "singular"].contains(&line.name)) {

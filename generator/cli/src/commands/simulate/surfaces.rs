@@ -8,9 +8,9 @@ use crate::json::{Failure, Kind};
 use crate::output;
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
-use crate::surface::{law, stated_in};
+use crate::surface::{help_of_law, law, stated_in};
 
-/// Surfaces as they stand on the command line.
+/// The options for surfaces.
 #[derive(Clone, Debug, clap::Args)]
 pub struct MotionSurfaces {
     /// Coulomb's coefficient of friction, not negative [default: that of the model]
@@ -19,8 +19,7 @@ pub struct MotionSurfaces {
     /// coefficient of restitution, between 0 and 1 [default: that of the model]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     e: Option<f64>,
-    /// hypothesis of restitution: newton, poisson or stronge [default: that of the model]
-    #[arg(long, value_name = "LAW")]
+    #[arg(long, value_name = "LAW", help = help_of_law())]
     law: Option<String>,
     /// static coefficient of friction, not less than mu: slip begins where friction exceeds it [default: mu]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
@@ -49,24 +48,41 @@ pub struct MotionSurfaces {
     surface: Vec<String>,
 }
 
-/// Surfaces of contacts and what they do beyond mu, e and law, by number.
+/// The surfaces of contacts, and their laws beyond mu, e and law, by the index of the contact.
 pub struct Found {
     pub surfaces: Vec<(usize, Surface<f64>)>,
     pub laws: Vec<(usize, ContactLaw)>,
 }
 
 impl MotionSurfaces {
+    /// The options as they were given.
+    pub fn given(&self) -> Vec<String> {
+        let numbers = [
+            ("mu", self.mu),
+            ("e", self.e),
+            ("mu-static", self.mu_static),
+            ("mu-impact", self.mu_impact),
+            ("rolling", self.rolling),
+            ("spinning", self.spinning),
+        ];
+        let texts = [("law", &self.law), ("sliding", &self.sliding), ("restitution", &self.restitution)];
+        let numbers = numbers.into_iter().filter_map(|(name, value)| Some((name, value?.to_string())));
+        let texts = texts.into_iter().filter_map(|(name, value)| Some((name, value.clone()?)));
+        let own = self.surface.iter().map(|text| ("surface", text.clone()));
+        numbers.chain(texts).chain(own).map(|(name, value)| format!("--{name}={value}")).collect()
+    }
+
     /// The surface of every contact that has a gap.
     ///
     /// # Errors
     ///
-    /// Numbers or names that are impossible, and [`Stop::Call`] where a contact is left without a surface.
+    /// Impossible numbers or names, and [`Stop::Call`] if a contact has no surface.
     pub fn of(&self, mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Outcome<Found> {
         let name = |contact| {
             mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name)
         };
         let law = self.law.as_deref().map(law).transpose()?;
-        // What is given is checked even where it is not enough.
+        // Check the given values even if others are missing.
         let all = GivenSurface { mu: self.mu, e: self.e, law }.check().map_err(Failure::from)?;
         let all_laws = self.laws_of_all()?;
         let mut laws: Vec<(usize, GivenLaw)> = Vec::new();
@@ -82,7 +98,7 @@ impl MotionSurfaces {
             own.push((place, surface));
             laws.push((place, law.or(all_laws.clone())));
         }
-        // What the options leave open stands in the model, if at all.
+        // Values that the options do not give are those of the model.
         for contact in 0..mechanism.count(ComponentKind::Contact) {
             let has_gap = !matches!(mechanism.gap(contact, state), Ok(None));
             if has_gap && own.iter().all(|(other, _)| *other != contact) {
@@ -111,7 +127,7 @@ impl MotionSurfaces {
         Ok(Found { surfaces: found.of_contacts, laws })
     }
 
-    /// What the options say of all contacts beyond mu, e and law.
+    /// The laws that the options give for all contacts, beyond mu, e and law.
     fn laws_of_all(&self) -> Outcome<GivenLaw> {
         let call = |option: &str, message: String| Stop::Call(format!("{option}: {message}"));
         let sliding = self.sliding.as_ref().map(|text| text.parse()).transpose();
@@ -127,7 +143,7 @@ impl MotionSurfaces {
     }
 }
 
-/// What is given of the law of a contact, and for what that leaves open what the model states, which is told on
+/// The law of a contact: the given parts, and for the others those of the model, which are reported on
 /// standard error.
 fn stated_law(
     mechanism: &dyn Contacts<f64>,
@@ -148,7 +164,7 @@ fn stated_law(
     Ok(whole)
 }
 
-/// The number of a contact.
+/// The index of a contact.
 fn place_of(contact: &str, mechanism: &dyn Contacts<f64>) -> Outcome<usize> {
     let names = || {
         let component = |place| mechanism.component(ComponentKind::Contact, place);
@@ -160,11 +176,11 @@ fn place_of(contact: &str, mechanism: &dyn Contacts<f64>) -> Outcome<usize> {
     })
 }
 
-/// The stiffnesses of contacts, by number.
+/// The stiffnesses of contacts, by the index of the contact.
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] where a text is no stiffness, and a name that is none.
+/// [`Stop::Call`] if a text is not a stiffness or a name is unknown.
 pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<Vec<(usize, f64)>> {
     let mut stiffnesses = Vec::new();
     for text in texts {
@@ -192,12 +208,12 @@ pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<V
 fn one(text: &str) -> Outcome<(&str, GivenSurface, GivenLaw)> {
     let wrong = || Stop::Call(format!("--surface {text}: give CONTACT=MU,E,LAW, as in tip=0.5,0.8,stronge"));
     let (contact, rest) = text.split_once('=').ok_or_else(wrong)?;
-    let parts = apart(rest);
+    let parts = split(rest);
     let [mu, e, named, more @ ..] = &parts[..] else { return Err(wrong()) };
     let mut given = GivenLaw::default();
     for part in more {
         let (part, value) = part.split_once('=').ok_or_else(|| {
-            Stop::Call(format!("--surface {text}: after MU,E,LAW stand parts such as mu_static=0.6"))
+            Stop::Call(format!("--surface {text}: give after MU,E,LAW parts such as mu_static=0.6"))
         })?;
         given
             .set(part.trim(), value.trim())
@@ -208,8 +224,8 @@ fn one(text: &str) -> Outcome<(&str, GivenSurface, GivenLaw)> {
     Ok((contact.trim(), surface.check().map_err(Failure::from)?, given))
 }
 
-/// What stands between commas, but for those in parentheses.
-fn apart(text: &str) -> Vec<&str> {
+/// The parts between commas outside parentheses.
+fn split(text: &str) -> Vec<&str> {
     let (mut parts, mut depth, mut begin) = (Vec::new(), 0_i32, 0);
     for (place, letter) in text.char_indices() {
         match letter {

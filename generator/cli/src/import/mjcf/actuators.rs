@@ -31,7 +31,7 @@ impl Reader<'_> {
     }
 }
 
-/// The joint that an actuator drives, and how.
+/// The joint that an actuator drives, and its law.
 fn actuator(element: &Element) -> Result<(String, Actuator), String> {
     let joint = element.text("joint").ok_or_else(|| {
         element.wrong("only actuators of a `joint` are imported: state the force of others in the model")

@@ -1,4 +1,4 @@
-//! Elements of MJCF with the values that their classes give them.
+//! Elements of MJCF with the default values of their classes.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,12 +11,12 @@ use crate::import::poses::{self, Pose};
 /// The values of attributes.
 type Values = BTreeMap<String, String>;
 
-/// What `<default>` gives to the elements of a class, by their names.
+/// The default values of each class, by the names of elements.
 #[derive(Default)]
 pub struct Defaults(BTreeMap<String, BTreeMap<String, Values>>);
 
 impl Defaults {
-    /// Reads a `<default>` and those in it, which have what is given to the outer one besides.
+    /// Reads a `<default>` and those inside it, which inherit its values.
     pub fn read(&mut self, node: Node, outer: Option<&str>) {
         let class = node.attribute("class").unwrap_or("main").to_owned();
         let mut all = self.0.get(outer.unwrap_or(&class)).cloned().unwrap_or_default();
@@ -33,11 +33,11 @@ impl Defaults {
         }
     }
 
-    /// An element of a class, which its own `class` overrides.
+    /// An element of a class; its own attribute `class` takes precedence.
     ///
     /// # Errors
     ///
-    /// A class that there is not.
+    /// The class does not exist.
     pub fn element(&self, node: Node, class: &str, at: String) -> Result<Element, String> {
         let name = node.tag_name().name();
         let class = node.attribute("class").unwrap_or(class);
@@ -54,17 +54,17 @@ impl Defaults {
 
 /// An element.
 pub struct Element {
-    /// where it stands
+    /// its place in the file
     pub at: String,
     /// its name, as `geom`
     pub kind: String,
     values: Values,
-    /// the attributes that were asked for
+    /// the attributes that were read
     known: RefCell<BTreeSet<String>>,
 }
 
 impl Element {
-    /// A value.
+    /// The value of an attribute.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.known.borrow_mut().insert(name.to_owned());
         self.values.get(name).map(String::as_str)
@@ -75,7 +75,7 @@ impl Element {
         self.text(name).is_none_or(|text| text == value)
     }
 
-    /// The attributes that nothing asked for.
+    /// The attributes that were never read.
     pub fn unknown(&self) -> Vec<String> {
         let known = self.known.borrow();
         self.values.keys().filter(|name| !known.contains(*name)).cloned().collect()
@@ -91,7 +91,7 @@ impl Element {
     ///
     /// # Errors
     ///
-    /// What is no finite number.
+    /// A part of the attribute is not a finite number.
     pub fn list(&self, name: &str) -> Result<Option<Vec<f64>>, String> {
         let Some(text) = self.text(name) else { return Ok(None) };
         let read: Option<Vec<f64>> = text
@@ -103,11 +103,11 @@ impl Element {
         read.map(Some).ok_or_else(wrong)
     }
 
-    /// So many numbers.
+    /// A fixed number of numbers.
     ///
     /// # Errors
     ///
-    /// As [`Element::list`], and where there are not so many.
+    /// Those of [`Element::list`]; or the count is another.
     pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, String> {
         let Some(list) = self.list(name)? else { return Ok(None) };
         let count = list.len();
@@ -119,7 +119,7 @@ impl Element {
     ///
     /// # Errors
     ///
-    /// As [`Element::numbers`].
+    /// Those of [`Element::numbers`].
     pub fn number(&self, name: &str, default: f64) -> Result<f64, String> {
         Ok(self.numbers::<1>(name)?.map_or(default, |[number]| number))
     }
@@ -128,18 +128,18 @@ impl Element {
     ///
     /// # Errors
     ///
-    /// As [`Element::numbers`], and where it is negative.
+    /// Those of [`Element::numbers`]; or the number is negative.
     pub fn amount(&self, name: &str, default: f64) -> Result<f64, String> {
         let number = self.number(name, default)?;
         if number >= 0.0 { Ok(number) } else { Err(self.wrong(&format!("`{name}` is negative"))) }
     }
 }
 
-/// What `<compiler>` says of angles.
+/// How angles are stated, according to `<compiler>`.
 pub struct Angles {
     /// whether they are in degrees
     pub degrees: bool,
-    /// the axes of Euler's angles, small letters for those that turn along
+    /// the axes of Euler angles; small letters for axes that rotate with the body
     pub sequence: String,
 }
 
@@ -149,11 +149,11 @@ impl Angles {
         if self.degrees { angle.to_radians() } else { angle }
     }
 
-    /// Where an element is in its body, and how it is turned.
+    /// The pose of an element in its body.
     ///
     /// # Errors
     ///
-    /// What is wrong with the numbers.
+    /// The mistake in the numbers.
     pub fn pose(&self, element: &Element) -> Result<Pose, String> {
         let at = element.numbers::<3>("pos")?.map_or(Vector3::zeros(), Vector3::from);
         Ok(Pose { turn: self.turn(element)?, at })

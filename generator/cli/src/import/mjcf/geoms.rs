@@ -1,4 +1,4 @@
-//! Geoms: what a body strikes with, and its mass where none is stated.
+//! Geoms: the collision solids of a body, and its mass if none is stated.
 
 use nalgebra::Vector3;
 
@@ -8,14 +8,14 @@ use crate::import::collision::{Collision, Solid};
 use crate::import::masses;
 use crate::import::poses::{self, Pose};
 
-/// A mass, its moments of inertia for a mass of 1 about its own axes, and where these are.
+/// A mass, its moments of inertia about its own axes for a mass of 1, and its pose.
 pub type Part = (f64, Vector3<f64>, Pose);
 
 /// A geom.
 pub struct Geom {
-    /// what it strikes with; `None`: it is for the eye, or no solid of a model
+    /// the collision solid; `None` for a geom without collisions, or one that models do not have
     pub collision: Option<Collision>,
-    /// what it adds to the mass of its body; a fault counts only where the body states no inertia
+    /// the mass that it contributes to its body; a mistake here matters only if the body states no inertia
     pub mass: Result<Option<Part>, String>,
 }
 
@@ -47,7 +47,7 @@ impl Reader<'_> {
             let sizes = size.get(..count).filter(|sizes| sizes.iter().all(|size| *size > 0.0));
             sizes.ok_or_else(|| element.wrong(&format!("a {kind} has {count} positive numbers in `size`")))
         };
-        // sizes are radii and half lengths
+        // `size` states radii and half lengths
         let along = |count: usize| -> Result<[f64; 2], String> {
             match ends {
                 Some(_) => Ok([given(1)?[0], length]),

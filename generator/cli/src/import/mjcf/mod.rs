@@ -15,11 +15,11 @@ use super::masses;
 use super::poses::Pose;
 use super::xml::Ignored;
 
-/// Bodies in bodies, at most.
-const DEEPEST: usize = 200;
+/// Largest depth of nested bodies.
+const MAX_DEPTH: usize = 200;
 
-/// Elements that describe nothing that moves: they are counted.
-const SEEN: [&str; 12] = [
+/// Elements without influence on the motion; they are counted as ignored.
+const WITHOUT_EFFECT: [&str; 12] = [
     "visual",
     "asset",
     "statistic",
@@ -34,7 +34,7 @@ const SEEN: [&str; 12] = [
     "plugin",
 ];
 
-/// Whether the inertia of a body is that of its geoms.
+/// Whether the inertia of a body is computed from its geoms.
 #[derive(Clone, Copy, PartialEq)]
 enum FromGeoms {
     Always,
@@ -46,7 +46,7 @@ enum FromGeoms {
 ///
 /// # Errors
 ///
-/// What is wrong with it, and what of it has no counterpart in a model, by name.
+/// The mistakes of the file, and the parts that have no counterpart in a model, by name.
 pub fn read(
     root: Node,
     file: &str,
@@ -107,18 +107,18 @@ struct Reader<'a> {
     from_geoms: FromGeoms,
     gravity: Vector3<f64>,
     chains: Chains,
-    /// bodies without a name so far
+    /// number of bodies without a name so far
     unnamed: usize,
     ignored: Ignored,
     problems: Vec<String>,
 }
 
-/// A body whose parts are read.
+/// A body with the parts that are read so far.
 struct Body {
     name: String,
     parent: String,
     pose: Pose,
-    /// its `childclass`, or that of what it is in
+    /// its `childclass`, or that of the body around it
     class: String,
     joints: Vec<Element>,
     geoms: Vec<geoms::Geom>,
@@ -130,7 +130,7 @@ impl Reader<'_> {
         format!("{}:{}", self.file, self.lines.place(node.range().start))
     }
 
-    /// Reads an element; a fault is reported, and what was not asked for is counted.
+    /// Reads an element; reports its mistakes, and counts attributes that were not read.
     fn attempt(&mut self, node: Node, read: impl FnOnce(&mut Self, &Element) -> Result<(), String>) {
         self.attempt_in(node, "main", read);
     }
@@ -154,11 +154,11 @@ impl Reader<'_> {
         }
     }
 
-    /// An element that is not used, or that would change the motion if it were not.
+    /// Counts an element without effect, and refuses one that would change the motion.
     fn other(&mut self, node: Node) {
         let name = node.tag_name().name();
         let at = self.at(node);
-        match SEEN.contains(&name) {
+        match WITHOUT_EFFECT.contains(&name) {
             true => self.ignored.count(format!("<{name}>"), || at),
             false if name == "include" => {
                 let file = node.attribute("file").unwrap_or_default();
@@ -171,7 +171,7 @@ impl Reader<'_> {
         }
     }
 
-    /// All elements of a section are refused, each by name.
+    /// Refuses all elements of a section, each by name.
     fn refuse_parts(&mut self, section: Node) {
         for node in section.children().filter(Node::is_element) {
             let (at, kind) = (self.at(node), node.tag_name().name());
@@ -251,7 +251,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What belongs to a body itself.
+    /// Reads an element of a body.
     fn part(&mut self, node: Node, body: &mut Body) {
         let class = body.class.clone();
         match node.tag_name().name() {
@@ -274,8 +274,8 @@ impl Reader<'_> {
 
     fn body(&mut self, node: Node, parent: &str, class: &str, depth: usize) {
         let at = self.at(node);
-        if depth > DEEPEST {
-            return self.problems.push(format!("{at}: bodies in more than {DEEPEST} bodies"));
+        if depth > MAX_DEPTH {
+            return self.problems.push(format!("{at}: bodies are nested more than {MAX_DEPTH} deep"));
         }
         let class = node.attribute("childclass").unwrap_or(class).to_owned();
         self.unnamed += usize::from(!node.has_attribute("name"));
@@ -284,7 +284,7 @@ impl Reader<'_> {
         self.attempt(node, |reader, element| {
             let _ = element.text("childclass");
             if !element.is_or_lacks("mocap", "false") {
-                return Err(element.wrong("a body that is moved from outside (`mocap`) cannot be imported"));
+                return Err(element.wrong("a body whose motion is prescribed (`mocap`) cannot be imported"));
             }
             read = Some(reader.angles.pose(element)?);
             Ok(())
@@ -302,7 +302,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The links and joints that a body is. Returns the name of the link that has its axes.
+    /// Forms the links and joints of a body. Returns the name of the link that has its axes.
     fn assemble(&mut self, body: Body, at: &str) -> Option<String> {
         let mut parts = Vec::new();
         let stated = body.inertial.is_some() && self.from_geoms != FromGeoms::Always;
@@ -314,11 +314,11 @@ impl Reader<'_> {
                 }
             }
         }
-        let inertial = if stated { body.inertial.clone() } else { masses::together(&parts) };
+        let inertial = if stated { body.inertial.clone() } else { masses::combined(&parts) };
         let collisions = body.geoms.iter().filter_map(|geom| geom.collision).collect();
         let link = Link { at: at.to_owned(), name: body.name.clone(), inertial, collisions };
         let mut parent = body.parent.clone();
-        // the axes of the body where the next joint is, in the axes of the joint before or in the parent
+        // the axes of the body at the next joint, relative to those of the previous joint or of the parent
         let mut pose = body.pose;
         let (count, mut within) = (body.joints.len(), Pose::identity());
         for (number, element) in body.joints.iter().enumerate() {
@@ -359,7 +359,7 @@ impl Reader<'_> {
         Some(self.chains.link(link, &within))
     }
 
-    /// A joint, and where it is in the axes of its body.
+    /// A joint, and its place in the axes of its body.
     fn joint(
         &self,
         element: &Element,
@@ -373,7 +373,7 @@ impl Reader<'_> {
         let axis = axis.try_normalize(0.0).ok_or_else(|| element.wrong("its axis has length 0"))?;
         if element.number("ref", 0.0)? != 0.0 {
             return Err(
-                element.wrong("`ref` is not 0: let its coordinate be 0 where the file has its bodies")
+                element.wrong("`ref` is not 0: let its coordinate be 0 in the configuration of the file")
             );
         }
         let rests_at = element.number("springref", 0.0)?;
@@ -394,7 +394,9 @@ impl Reader<'_> {
             "slide" => about_one("prismatic", rests_at)?,
             "ball" => about_one("ball", 0.0)?,
             "free" if body.parent != "world" || count != 1 => {
-                return Err(element.wrong("only a body of the world itself, without other joints, is free"));
+                return Err(
+                    element.wrong("only a child of the world without other joints can have a free joint")
+                );
             }
             "free" => {
                 let [w, x, y, z] = body.pose.quaternion();

@@ -1,5 +1,5 @@
 //! Shortens expressions: multiplies products out, replaces squares of sines or cosines, and replaces names by
-//! what they stand for.
+//! their definitions.
 
 use super::{Intermediates, Meaning};
 use crate::algebra::expr::{Expr, SymbolId, View};
@@ -22,7 +22,7 @@ impl Intermediates {
         if size(expr) <= size(&best) { expr.clone() } else { best }
     }
 
-    /// Pairs of sine and cosine symbols of one angle of which one occurs squared.
+    /// Pairs of sine and cosine symbols of one angle, one of which occurs squared.
     fn angles_squared(&self, expr: &Expr) -> Vec<(SymbolId, SymbolId)> {
         let mut pairs = Vec::new();
         for symbol in expr.symbols() {
@@ -36,7 +36,7 @@ impl Intermediates {
         pairs
     }
 
-    /// The expression with names replaced by what they stand for, as long as it stays within a size.
+    /// The expression with names replaced by their definitions, as long as its size stays below `most`.
     pub fn opened(&self, expr: &Expr, most: usize) -> Expr {
         let mut best = expr.clone();
         loop {
@@ -54,7 +54,7 @@ impl Intermediates {
     }
 }
 
-/// `expr` with `symbol`^2 replaced by `square`, wherever it stands in an expanded expression.
+/// `expr` with `symbol`^2 replaced by `square`, wherever it occurs in the expanded expression.
 fn reduce_square(expr: &Expr, symbol: SymbolId, square: &Expr) -> Expr {
     if has_divisor(expr) {
         return expr.clone();
@@ -83,7 +83,7 @@ fn reduce_square(expr: &Expr, symbol: SymbolId, square: &Expr) -> Expr {
     expr.clone()
 }
 
-/// Whether a negative power of anything occurs.
+/// Whether a negative power occurs.
 fn has_divisor(expr: &Expr) -> bool {
     match expr.view() {
         View::Number(_) | View::Symbol(_) => false,
@@ -92,7 +92,7 @@ fn has_divisor(expr: &Expr) -> bool {
     }
 }
 
-/// How many operations an expression costs, roughly.
+/// The approximate number of operations of an expression.
 pub fn size(expr: &Expr) -> usize {
     match expr.view() {
         View::Number(_) | View::Symbol(_) => 1,

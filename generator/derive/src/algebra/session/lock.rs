@@ -1,4 +1,4 @@
-//! The lock file: one for all processes of a user, even where their environment variables name different home
+//! The lock file: one for all processes of a user, even if their environment variables name different home
 //! and temporary directories.
 
 use std::fs::{DirBuilder, File, OpenOptions, TryLockError};
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::SessionError;
 
-/// The lock file. Its place depends on the user alone: two environments of one user must meet in it, two
+/// The lock file. Its path depends only on the user: all environments of a user must share it, and different
 /// users must not.
 pub fn lock_path() -> PathBuf {
     folder().join("algebra-engine.lock")
@@ -20,13 +20,13 @@ fn folder() -> PathBuf {
     Path::new("/tmp").join(format!("hodograph-{}", rustix::process::geteuid().as_raw()))
 }
 
-/// Elsewhere the temporary directory belongs to the user.
+/// On other systems the temporary directory belongs to the user.
 #[cfg(not(unix))]
 fn folder() -> PathBuf {
     std::env::temp_dir().join("hodograph")
 }
 
-/// Waits for the lock, and says so on stderr where that takes more than a moment.
+/// Waits for the lock, and reports this on standard error if it takes more than a moment.
 pub(super) fn acquire() -> Result<File, SessionError> {
     let path = lock_path();
     let failed = |error: io::Error| SessionError::Lock { path: path.clone(), reason: error.to_string() };
@@ -48,13 +48,12 @@ fn open(path: &Path) -> io::Result<File> {
         builder.recursive(true).create(folder)?;
         belongs_to_user(folder)?;
     }
-    // a lock needs no more than the right to read, which is what is left of a file on a medium that is
-    // read-only
+    // a lock needs only the right to read, which exists even on a read-only medium
     let written = OpenOptions::new().create(true).append(true).open(path);
     written.or_else(|error| File::open(path).map_err(|_| error))
 }
 
-/// Whoever made the folder could lead the file in it elsewhere.
+/// The owner of the folder could redirect the file in it.
 #[cfg(unix)]
 fn belongs_to_user(folder: &Path) -> io::Result<()> {
     use std::os::unix::fs::MetadataExt;
@@ -81,7 +80,7 @@ fn wait(file: &File, path: &Path, said: &mut bool) -> io::Result<()> {
     }
     if !*said {
         *said = true;
-        // Whether anybody reads it does not matter.
+        // Errors of writing the message are ignored.
         let _ = writeln!(
             io::stderr().lock(),
             "hodograph: waiting for another derivation to end: one at a time may use the algebra engine (lock {})",
@@ -91,7 +90,7 @@ fn wait(file: &File, path: &Path, said: &mut bool) -> io::Result<()> {
     file.lock()
 }
 
-/// Temporary directories are swept: a file that is no longer there excludes nobody.
+/// Temporary directories are cleaned up: a deleted file excludes nobody.
 #[cfg(unix)]
 fn is_still(path: &Path, file: &File) -> bool {
     use std::os::unix::fs::MetadataExt;

@@ -14,18 +14,18 @@ use crate::kinematics::Kinematics;
 use crate::kinematics::linear_forms::{self, Triple};
 use hodograph_model::model::mechanism::{FrameId, PointId};
 
-/// What acts on velocities that are still to be inserted.
+/// The forces and torques on velocities that are still to be inserted.
 pub struct Acting {
     /// forces on points
     pub force: BTreeMap<PointId, Triple>,
     /// torques on frames
     pub torque: BTreeMap<FrameId, Triple>,
-    /// what each `u'` bears so far
+    /// the load on each `u'` so far
     pub loads: BTreeMap<usize, Expr>,
 }
 
 impl Acting {
-    /// Leaves a torque's work on the `u'` of its frame's relation.
+    /// Adds the work of a torque to the `u'` of its frame's relation.
     pub fn split_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
         let Some(torque) = self.torque.get_mut(&frame) else { return };
         *torque = linear_forms::name(&mut k.z, torque.clone());
@@ -46,8 +46,8 @@ impl Acting {
         }
     }
 
-    /// Leaves a force's work on the `u'` of its point's relation; `None` if more than one frame carries the
-    /// point.
+    /// Adds the work of a force to the `u'` of its point's relation; `None` if more than one frame carries
+    /// the point.
     pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let Some(force) = self.force.get_mut(&point) else { return Some(()) };
         *force = linear_forms::name(&mut k.z, force.clone());
@@ -72,7 +72,7 @@ impl Acting {
         Some(())
     }
 
-    /// What `u' = load / d` takes from the forces further in.
+    /// Subtracts the effect of `u' = load / d` from the forces further inwards.
     pub fn eliminate(&mut self, k: &mut Kinematics<'_>, step: &Eliminated, load: &Expr) {
         if load.is_zero() {
             return;
@@ -80,7 +80,7 @@ impl Acting {
         let minus = step.reciprocal.neg();
         let named = k.z.name(load.clone());
         let share = k.z.name(named.mul(&minus));
-        // What a hinge bears about its axis goes no further, but what drives it.
+        // The torque about a hinge's axis is not passed on, except that of its drive.
         let part = |c: &Expr| {
             let ratio = c.mul(&minus);
             if ratio.is_number() { load.mul(&ratio) } else { share.mul(c) }

@@ -15,7 +15,7 @@ use hodograph_program::program::graph::{Graph, Input, Node};
 use hodograph_program::program::ldl::Factor;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
-/// Where the entries of a reduced matrix stand.
+/// Rows and columns of the entries of a reduced matrix.
 const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// The response of a mechanism to unit impulses at a contact.
@@ -27,7 +27,7 @@ struct Responses {
 }
 
 impl Writer<'_, '_> {
-    /// The forms of all contacts, found in the way that takes fewer operations.
+    /// The forms of all contacts, computed in the way that takes fewer operations.
     pub(super) fn contact_forms(&mut self) -> Vec<ContactForms> {
         let mechanism = self.k.mechanism;
         mechanism.contacts.iter().map(|contact| self.cheaper_forms(contact)).collect()
@@ -41,7 +41,7 @@ impl Writer<'_, '_> {
             let nodes = self.nodes(partials.chain(&forms.gap));
             (self.graph.cost(&nodes), forms)
         });
-        // What is seen to vanish decides on the basis and on closed forms.
+        // Zeros that are recognised determine the basis and closed forms.
         let vanishes = |forms: &ContactForms, row: usize, slot: usize| {
             forms.rows.partials[row].get(&slot).is_none_or(Expr::is_zero)
         };
@@ -52,7 +52,7 @@ impl Writer<'_, '_> {
         if other_cost < cost && sees_as_much && usual.basis == other.basis { other } else { usual }
     }
 
-    /// Everything about all contacts but its derivatives; the structures of their reduced matrices.
+    /// All quantities of all contacts except derivatives; returns the structures of their reduced matrices.
     pub(super) fn contacts(
         &mut self,
         forms: &[ContactForms],
@@ -206,12 +206,12 @@ impl Writer<'_, '_> {
         if let Some(articulated) = self.articulated.take() {
             let shared = partials.concat();
             let cost = |graph: &Graph, reduced: &[Node]| graph.cost(&[&shared, reduced].concat());
-            // The count is rough: only what is clearly less is less.
+            // The count is approximate: only a clear difference counts.
             if let Some(forces) = &forms.forces
                 && let Some(other) = self.responses(&articulated, forces)
                 && 10 * cost(&self.graph, &other.reduced) < 9 * cost(&self.graph, &reduced)
             {
-                // What is 0 whatever the state is 0 to the last bit.
+                // Entries that are identically 0 are exactly 0.
                 let kept = reduced.iter().zip(&other.reduced);
                 reduced = kept
                     .map(|(&by_factor, &other)| if self.graph.is_zero(by_factor) { by_factor } else { other })
@@ -241,11 +241,13 @@ impl Writer<'_, '_> {
         dependent
     }
 
-    /// The derivative along a direction of what a collision is made of. Where time acts by itself it would
-    /// not be all.
+    /// The derivative of the quantities of a collision along a direction. If time occurs explicitly, it would
+    /// be incomplete.
     pub(super) fn contact_tangents(&mut self, rates: &Option<HashMap<Input, Node>>) {
         let Some(rates) = rates else { return };
-        for number in 0..self.k.mechanism.contacts.len() as u32 {
+        let contacts = self.k.mechanism.contacts.iter().zip(0..);
+        let alone = contacts.filter(|(contact, _)| !contact.is_one_of_many());
+        for number in alone.map(|(_, number)| number).collect::<Vec<u32>>() {
             let found = |quantity| {
                 let quantity = Quantity::Contact(number, quantity);
                 self.outputs

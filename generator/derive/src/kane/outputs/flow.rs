@@ -9,13 +9,13 @@ use hodograph_program::program::graph::{Input, Node};
 use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
 
 impl Writer<'_, '_> {
-    /// The nodes of a quantity, if it is written.
+    /// The nodes of a quantity, if they exist.
     fn written(&self, quantity: Quantity) -> Option<Vec<Node>> {
         self.outputs.iter().find(|output| output.quantity == quantity).map(|output| output.values.clone())
     }
 
-    /// How time, coordinates and independent speeds change in a second, for given rates of the speeds. Named
-    /// inputs are held.
+    /// The rates of time, coordinates and independent speeds, for given rates of the speeds. Named inputs are
+    /// constant.
     fn motion(&mut self, accelerations: &[Node]) -> HashMap<Input, Node> {
         let one = self.graph.integer(1);
         let mut rates = HashMap::from([(Input::Time, one)]);

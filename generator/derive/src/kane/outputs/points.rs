@@ -1,5 +1,7 @@
 //! Writes positions, velocities and Jacobians of points, and orientations of frames, as nodes.
 
+use std::collections::HashSet;
+
 use super::Writer;
 use crate::algebra::Expr;
 use crate::kane::contacts::point_jacobian;
@@ -10,8 +12,11 @@ use hodograph_program::program::graph::Node;
 use hodograph_program::program::{PointQuantity, Quantity};
 
 impl Writer<'_, '_> {
-    /// Positions, velocities and Jacobians of all points.
+    /// Positions, velocities and Jacobians of all points; of the places of a contact that is one of many, positions.
     pub(super) fn points(&mut self) {
+        let contacts = &self.k.mechanism.contacts;
+        let many: HashSet<PointId> =
+            contacts.iter().filter(|contact| contact.is_one_of_many()).map(|contact| contact.point).collect();
         for id in 1..self.k.mechanism.points.len() {
             let of = |quantity| Quantity::Point(id as u32, quantity);
             let point = PointId(id);
@@ -23,6 +28,9 @@ impl Writer<'_, '_> {
                 let nodes = self.nodes(&position);
                 self.put(of(PointQuantity::Position), 3, 1, nodes);
             }
+            if many.contains(&point) {
+                continue;
+            }
             let (axes, velocity) = self.k.velocity_value(point);
             let velocity = self.k.tree.convert(&mut self.k.z, &velocity, axes, AxesTree::N);
             let nodes = self.nodes(&velocity);
@@ -32,7 +40,8 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// The partial velocities of a point along N, row by row, found in the way that takes fewer operations.
+    /// The partial velocities of a point along N, row by row, computed in the way that takes fewer
+    /// operations.
     fn point_jacobian(&mut self, point: PointId) -> Vec<Node> {
         let [usual, other] = [Along::Result, Along::Home].map(|along| {
             let form = point_jacobian(self.k, point, along);

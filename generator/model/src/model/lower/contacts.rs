@@ -98,6 +98,7 @@ impl Lowering<'_> {
             gap: gap.flatten().flatten(),
             without_gap,
             validity: None,
+            tangent: None,
             gap_span,
             surface,
             law,

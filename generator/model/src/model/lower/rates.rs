@@ -4,19 +4,11 @@
 use std::collections::HashMap;
 
 use super::super::mechanism::*;
-use super::super::names::Symbol;
+use super::super::names::{Symbol, speeds_of};
 use super::super::provenance::Provenance;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
-
-/// The names that the rate of a coordinate may have: `u1` for `q1`, `u_hip` for `q_hip`, and in an instance of a
-/// part, whose names begin with that of the instance, `leg_u1` for `leg_q1`.
-fn speeds_of(coordinate: &str) -> impl Iterator<Item = String> {
-    let begins = |at: &usize| *at == 0 || coordinate[..*at].ends_with('_');
-    let places = coordinate.match_indices('q').map(|(at, _)| at).filter(begins);
-    places.map(|at| format!("{}u{}", &coordinate[..at], &coordinate[at + 1..]))
-}
 
 /// A set of coordinates.
 #[derive(Clone, Default)]

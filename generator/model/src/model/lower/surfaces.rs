@@ -1,8 +1,8 @@
 //! Lowers the surfaces of contacts: friction and restitution.
 
-use super::super::mechanism::{ContactLaw, Law, Named, Surface};
+use super::super::mechanism::{ContactLaw, Named, Surface};
 use super::Lowering;
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
 use crate::suggest;
 use crate::syntax::tree::{ExprKind, Field};
 use crate::words;
@@ -40,6 +40,8 @@ impl Lowering<'_> {
         if fields.is_empty() {
             let message = "a surface that says nothing";
             let error = Diagnostic::new(codes::SURFACE, field.value.span, message);
+            let usual = "mu: 0.3, e: 0.5, law: stronge";
+            let error = error.fix(Place::IntoBraces(field.name.span), usual);
             self.report(error.help("state `mu`, `e` and `law`, or leave `surface` out"));
             return (surface, more);
         }
@@ -105,7 +107,9 @@ impl Lowering<'_> {
             let error = Diagnostic::new(codes::SURFACE, span, message);
             let near = suggest::nearest(name, known.iter().map(|(known, _)| *known));
             self.report(match near {
-                Some(near) => error.help(format!("did you mean `{near}`? The laws are {forms}")),
+                Some(near) => error
+                    .fix(Place::Replace(span), near)
+                    .help(format!("did you mean `{near}`? The laws are {forms}")),
                 None => error.help(format!("the laws are {forms}")),
             });
             return None;
@@ -154,21 +158,21 @@ impl Lowering<'_> {
         Some(value)
     }
 
-    fn law(&mut self, field: &Field) -> Option<Law> {
+    fn law(&mut self, field: &Field) -> Option<&'static str> {
         self.notes(field, &[]);
         let name = match &field.value.kind {
             ExprKind::Name(name) => name.to_lowercase(),
             ExprKind::Error => return None,
             _ => String::new(),
         };
-        let law = Law::ALL.into_iter().find(|law| law.name() == name);
+        let law = words::look(words::LAWS, &name).map(|law| law.text);
         if law.is_none() {
             let error =
                 Diagnostic::new(codes::SURFACE, field.value.span, "there is no such law of restitution");
-            let near = suggest::nearest(&name, Law::ALL.into_iter().map(Law::name));
+            let near = suggest::nearest(&name, words::LAWS.iter().map(|law| law.text));
             self.report(match near {
                 Some(near) => error.did_you_mean(near),
-                None => error.help("the laws are newton, poisson and stronge"),
+                None => error.help(format!("the laws are {}", words::texts(words::LAWS))),
             });
         }
         law

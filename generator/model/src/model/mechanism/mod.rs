@@ -406,6 +406,8 @@ pub struct Contact {
     pub without_gap: bool,
     /// how far the place of contact is within the faces and edges that touch there, m; none where these do not end
     pub validity: Option<Scalar>,
+    /// the first tangent, a unit vector across the normal; none where the derivation chooses one
+    pub tangent: Option<Vector>,
     /// where the gap is stated; else where the contact is declared
     pub gap_span: Span,
     /// friction and restitution, where the model states them
@@ -421,6 +423,14 @@ pub struct Contact {
     pub span: Span,
 }
 
+impl Contact {
+    /// Whether it is one of the dozens of a pair of boxes: these have no methods and no derivatives of their
+    /// own, and generated modules reach them by number.
+    pub fn is_one_of_many(&self) -> bool {
+        self.tangent.is_some()
+    }
+}
+
 /// Friction and restitution of a contact. They are defaults of the tool and of the module: equations do not
 /// depend on them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -429,13 +439,13 @@ pub struct Surface {
     pub mu: f64,
     /// coefficient of restitution, from 0 to 1
     pub e: f64,
-    /// the hypothesis of restitution
-    pub law: Law,
+    /// the hypothesis of restitution: a word of [`crate::words::LAWS`]
+    pub law: &'static str,
 }
 
 impl Surface {
     /// What is left out of a surface is this: without friction, without rebound.
-    pub const PLAIN: Surface = Surface { mu: 0.0, e: 0.0, law: Law::Poisson };
+    pub const PLAIN: Surface = Surface { mu: 0.0, e: 0.0, law: "poisson" };
 }
 
 /// What a surface does beyond one coefficient of friction and one of restitution. Simulations read it.
@@ -476,31 +486,6 @@ impl Named {
     pub const SLIDING: &'static str = "constant or stribeck(SPEED)";
     /// The laws of restitution.
     pub const RESTITUTION: &'static str = "constant, threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT) or table(SPEED, E, SPEED, E, ..)";
-}
-
-/// Hypotheses of restitution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
-    /// ratio of normal velocities
-    Newton,
-    /// ratio of normal impulses
-    Poisson,
-    /// ratio of works of the normal force
-    Stronge,
-}
-
-impl Law {
-    /// All.
-    pub const ALL: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
-    /// Its name in models and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Law::Newton => "newton",
-            Law::Poisson => "poisson",
-            Law::Stronge => "stronge",
-        }
-    }
 }
 
 /// What a contact strikes.

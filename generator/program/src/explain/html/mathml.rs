@@ -1,20 +1,20 @@
 //! Writes terms as MathML.
 //!
-//! A long right side is several `math` elements, one for each summand, between which a browser may begin a
-//! new line; MathML itself has no lines.
+//! A long right side is written as several `math` elements, one for each summand, between which a browser may
+//! break the line; MathML itself has no line breaks.
 
 use super::super::symbols::{Form, Symbol, Symbols, form};
 use super::super::{Left, Rank, Term};
 use super::escape::plain;
 
-/// Between factors.
+/// The sign between factors.
 const TIMES: &str = "<mo lspace=\"0.12em\" rspace=\"0.12em\">&#x22C5;</mo>";
 const PLUS: &str = "<mo form=\"infix\">+</mo>";
 const MINUS: &str = "<mo form=\"infix\">&#x2212;</mo>";
 const SIGN: &str = "<mo form=\"prefix\">&#x2212;</mo>";
 const OPEN: &str = "<mo form=\"prefix\" stretchy=\"false\">(</mo>";
 const CLOSE: &str = "<mo form=\"postfix\" stretchy=\"false\">)</mo>";
-/// A factor in brackets of more symbols than this may be broken at its signs.
+/// A bracketed factor with more symbols than this may be broken at its signs.
 const BREAKABLE: usize = 4;
 
 /// Writes terms with the symbols of a mechanism.
@@ -90,7 +90,7 @@ impl Writer<'_> {
         scripted(identifier(self.symbols.letter), &index.to_string(), exponent)
     }
 
-    /// A left side.
+    /// The left side of an equation.
     pub fn left(&self, left: &Left) -> String {
         match left {
             Left::Z(index) => self.z(*index, ""),
@@ -100,7 +100,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A right side in pieces, between which a line may end.
+    /// A right side in pieces, between which a line may be broken.
     pub fn pieces(&self, term: &Term) -> Vec<String> {
         match term {
             Term::Sum(terms) => self.summands(terms),
@@ -130,7 +130,7 @@ impl Writer<'_> {
         all
     }
 
-    /// A summand in pieces: a factor in brackets may be broken at its signs.
+    /// A summand in pieces: a bracketed factor may be broken at its signs.
     fn factors(&self, term: &Term, needed: Rank) -> Vec<String> {
         let long = |term: &Term| {
             matches!(term, Term::Sum(_))
@@ -165,7 +165,7 @@ impl Writer<'_> {
         pieces
     }
 
-    /// A term in one piece, in brackets where something of at least this rank is needed.
+    /// A term in one piece, in brackets if its rank is below `needed`.
     pub fn term(&self, term: &Term, needed: Rank) -> String {
         let text = match term {
             Term::Number(value) if *value < 0.0 => format!("{SIGN}{}", number(-value)),
@@ -201,7 +201,8 @@ impl Writer<'_> {
             Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh"), arguments) => {
                 self.call(function, arguments, &exponent)
             }
-            // What ends in a bracket, an index or a bar bears an exponent; a fraction or product does not.
+            // A term that ends in a bracket, an index or a bar can bear an exponent; a fraction or a product
+            // cannot.
             Term::Number(value) if !matches!(form(*value), Form::Decimal(_)) => {
                 format!("<msup>{}{exponent}</msup>", bracketed(&self.term(base, Rank::Sum)))
             }

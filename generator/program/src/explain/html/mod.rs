@@ -31,7 +31,7 @@ pub fn write(document: &Document) -> String {
     )
 }
 
-/// Text in which what stands between backticks is code.
+/// Text in which parts between backticks are marked as code.
 fn prose(text: &str) -> String {
     let parts: Vec<String> = text.split('`').map(plain).collect();
     if parts.len().is_multiple_of(2) {
@@ -49,12 +49,13 @@ fn paragraphs(docs: &str) -> String {
     paragraphs.map(|paragraph| format!("<p>{}</p>\n", prose(paragraph))).collect()
 }
 
-/// Units in words: each word by itself.
+/// Units in words; each word is marked separately.
 fn units(text: &str) -> String {
     text.split(' ').map(unit).collect::<Vec<_>>().join(" ")
 }
 
-/// Sections that stand under one heading: the title of the only one, or what they belong to.
+/// Groups of sections under one heading: the title of the only section, or the name of the contact, point or
+/// frame.
 fn groups(document: &Document) -> Vec<Vec<(usize, &Section)>> {
     let mut groups: Vec<Vec<(usize, &Section)>> = Vec::new();
     for (index, section) in document.sections.iter().enumerate() {
@@ -114,8 +115,8 @@ fn names(document: &Document, writer: &Writer<'_>) -> String {
     out + "</section>\n"
 }
 
-/// A value in a table. Digits are text, which breaks where the column ends: browsers leave out what a formula
-/// has beyond.
+/// A value in a table. It is written as text, which browsers wrap at the edge of a column; they cut off a
+/// formula that is too wide.
 fn digits(value: f64, writer: &Writer<'_>) -> String {
     let text = |digits: &str| plain(&digits.replace('-', "\u{2212}"));
     match form(value) {

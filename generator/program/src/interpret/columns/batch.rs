@@ -1,4 +1,4 @@
-//! From blocks to rows and columns of results.
+//! Evaluates all rows of a table, block by block, and writes the results by rows or by columns.
 
 use std::ops::Range;
 
@@ -13,27 +13,27 @@ use crate::interpret::prepared::Failed;
 pub struct Block<'a> {
     /// the row of the first state
     pub first: usize,
-    /// how many states
+    /// number of states
     pub count: usize,
     results: &'a [Slot],
     failures: &'a [Option<Failed>; LANES],
 }
 
 impl<'a> Block<'a> {
-    /// A result of all states of the block; of one that fails it has no meaning.
+    /// A result for all states of the block. Entries of states that fail have no meaning.
     pub fn column(&self, result: usize) -> &'a [f64] {
         self.results.get(result).and_then(|slot| slot.as_flattened().get(..self.count)).unwrap_or(&[])
     }
 
-    /// Why the states of the block have no results.
+    /// For each state of the block, why it has no results.
     pub fn failures(&self) -> &'a [Option<Failed>] {
         self.failures.get(..self.count).unwrap_or(self.failures)
     }
 }
 
 impl Columns {
-    /// Evaluates the states of these rows; `with` receives them block by block. Rows that the table does not
-    /// have are left out.
+    /// Evaluates the states of these rows and passes the results to `with`, block by block. Rows beyond the
+    /// table are ignored.
     pub fn for_each_block(&self, table: &Table<'_>, rows: Range<usize>, mut with: impl FnMut(Block<'_>)) {
         let mut scratch = Scratch::new(self);
         let end = rows.end.min(table.rows);
@@ -45,7 +45,7 @@ impl Columns {
     }
 
     /// Evaluates the states of these rows into `numbers` (rows x [`Columns::len`], by rows) and `failures`
-    /// (rows). The numbers of a state that fails are not numbers.
+    /// (rows). The results of a state that fails are NaN.
     pub fn by_rows(
         &self,
         table: &Table<'_>,
@@ -73,7 +73,7 @@ impl Columns {
     }
 
     /// Evaluates the states of these rows into one column (rows) for each result, and `failures` (rows). The
-    /// numbers of a state that fails are not numbers.
+    /// results of a state that fails are NaN.
     pub fn by_columns(
         &self,
         table: &Table<'_>,

@@ -1,5 +1,5 @@
-//! From a program to steps on slots: what depends on parameters alone is a number already, and a slot is used
-//! again when nobody reads it any more.
+//! Compiles a program to steps on slots. Values that depend on parameters alone become numbers, and a slot is
+//! reused after the last use of its value.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::mem::discriminant;
@@ -10,8 +10,9 @@ use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Program, Quantity};
 use hodograph_model::arithmetic::Function;
 
-/// What a step does with the operands `a`, `b`, `c`. The letters at the end say for each of them whether it
-/// is in a slot (`S`) or the same for all states (`U`); factors and terms may have changed places.
+/// The operation of a step on the operands `a`, `b`, `c`. The letters at the end say for each operand whether
+/// it is in a slot (`S`) or the same for all states (`U`, uniform). Factors and terms may have been
+/// exchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     Load(Input),
@@ -57,7 +58,7 @@ pub enum Code {
     NotSmallUS,
 }
 
-/// A step: its result goes to `to`; a pair of sine and cosine to `to` and `b`.
+/// A step. Its result goes to slot `to`; sine and cosine go to `to` and `b`.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     pub code: Code,
@@ -67,19 +68,19 @@ pub struct Step {
     pub c: u32,
 }
 
-/// Some quantities of a program, ready to be evaluated at many states at the parameters it was prepared for.
+/// Some quantities of a program, prepared for evaluation at many states with the same parameters.
 #[derive(Clone, Debug)]
 pub struct Columns {
     pub(super) steps: Vec<Step>,
-    /// how many slots the steps need
+    /// number of slots that the steps need
     pub(super) slots: usize,
-    /// numbers that are the same for all states: which value of the program each is, and the number
+    /// values that are the same for all states: the value of the program, and its number
     pub(super) uniforms: Vec<(Value, f64)>,
-    /// results that are the same for all states: their place, and which of `uniforms`
+    /// results that are the same for all states: the index of the result, and its index in `uniforms`
     pub(super) uniform_results: Vec<(usize, u32)>,
-    /// how many results a state has
+    /// number of results of a state
     pub(super) len: usize,
-    /// the guards of the program that are checked, in the order in which they are reported
+    /// indices of the guards that are checked, in the order in which they are reported
     pub(super) guards: Vec<usize>,
 }
 
@@ -89,44 +90,44 @@ impl Columns {
         columns(program, constants, quantities)
     }
 
-    /// Goes over to other parameters.
+    /// Replaces the parameters.
     pub fn refresh(&mut self, constants: &Constants) {
         for (value, number) in &mut self.uniforms {
             *number = constants.get(*value);
         }
     }
 
-    /// How many results a state has: the quantities one after the other, each by rows.
+    /// Number of results of a state: the entries of all quantities, one after the other, each by rows.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none, because the program has none of the quantities.
+    /// Whether there are no results, because the program has none of the quantities.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// How many slots a block needs, of `8 LANES` bytes each.
+    /// Number of slots of a block, each of `8 LANES` bytes.
     pub fn slots(&self) -> usize {
         self.slots
     }
 }
 
-/// A number of every state: a value of the program, or the cosine of a pair.
+/// A value that differs between states: a value of the program, or the cosine of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Varying {
     value: u32,
     cosine: bool,
 }
 
-/// An operand before slots are given out.
+/// An operand before slots are assigned.
 #[derive(Clone, Copy, Debug)]
 enum Place {
     Varying(Varying),
     Uniform(u32),
 }
 
-/// A step before slots are given out: what it defines, and its operands.
+/// A step before slots are assigned: the value that it defines, and its operands.
 struct Draft {
     code: Code,
     defines: [Option<Varying>; 2],
@@ -216,7 +217,7 @@ impl Compiler<'_> {
                 uniforms.len() as u32 - 1
             }));
         }
-        // A sine is the first, a cosine the second number of its pair.
+        // The sine is the first number of its pair, the cosine the second.
         Place::Varying(match self.program.operation(value) {
             Operation::Sine(pair) => Varying { value: pair.0, cosine: false },
             Operation::Cosine(pair) => Varying { value: pair.0, cosine: true },
@@ -224,7 +225,7 @@ impl Compiler<'_> {
         })
     }
 
-    /// The step of a value that depends on the state; none for a number of a pair, which comes with it.
+    /// The step that computes a value; `None` for a sine or cosine, which the step of their pair computes.
     fn draft(&mut self, value: Value) -> Option<Draft> {
         use Operation as O;
         let first = Varying { value: value.0, cosine: false };
@@ -233,8 +234,7 @@ impl Compiler<'_> {
         let mut places = operation.operands().map(|operand| self.place(operand));
         let mut operands: [Option<Place>; 3] = std::array::from_fn(|_| places.next());
         drop(places);
-        // factors and terms that are the same for all states go last; of three operands, the first two are
-        // factors
+        // Uniform factors and terms go last. Of three operands, the first two are the factors.
         let exchangeable =
             matches!(operation, O::Add(..) | O::Mul(..) | O::MulAdd(..) | O::MulSub(..) | O::NegMulAdd(..));
         if exchangeable && matches!(operands[0], Some(Place::Uniform(_))) {
@@ -293,22 +293,22 @@ impl Compiler<'_> {
     }
 }
 
-/// Of the codes for two operands in slots, the second the same for all states, the first.
+/// Chooses among the codes for operands SS, SU, US.
 fn pick(codes: [Code; 3], uniform: [bool; 3]) -> Code {
     codes[if uniform[0] { 2 } else { usize::from(uniform[1]) }]
 }
 
-/// Of the codes for the operands SSS, SUS, SSU, SUU, UUS.
+/// Chooses among the codes for the operands SSS, SUS, SSU, SUU, UUS.
 fn pick_of_five(codes: [Code; 5], uniform: [bool; 3]) -> Code {
     codes[if uniform[0] { 4 } else { usize::from(uniform[1]) + 2 * usize::from(uniform[2]) }]
 }
 
-/// So many of the steps that wait are looked at for one that does the same as the last.
+/// Number of waiting steps that are searched for one with the same code as the last step.
 const WINDOW: usize = 128;
 
-/// The steps in an order in which those that do the same follow each other where their operands allow it: the
-/// processor then foresees what the next one does. They stay near their place, so that few more numbers must
-/// be held at a time.
+/// Orders the steps so that steps with the same code follow each other as far as their operands allow; this
+/// helps the processor's branch prediction. Steps move by a bounded distance only, so that the number of live
+/// values hardly grows.
 fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
     let mut waiting = VecDeque::from(drafts);
     let mut defined = HashSet::<Varying>::new();
@@ -322,14 +322,14 @@ fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
             };
             Some(discriminant(&draft.code)) == last && draft.operands.iter().flatten().all(known)
         });
-        // the operands of the first one come from steps before it
+        // The operands of the first waiting step are defined by earlier steps.
         let Some(draft) = waiting.remove(alike.unwrap_or(0)) else { return ordered };
         defined.extend(draft.defines.iter().flatten());
         ordered.push(draft);
     }
 }
 
-/// Gives out slots: the latest that became free is the next to be used.
+/// Assigns slots; the slot that became free last is reused first.
 fn with_slots(drafts: &[Draft]) -> (Vec<Step>, usize) {
     let mut last: HashMap<Varying, usize> = HashMap::new();
     for (index, draft) in drafts.iter().enumerate() {
@@ -368,7 +368,7 @@ fn with_slots(drafts: &[Draft]) -> (Vec<Step>, usize) {
             })
         });
         for varying in draft.defines.into_iter().flatten() {
-            // nobody reads it
+            // the value is never used
             if last.get(&varying) == Some(&index)
                 && let Some(slot) = held.remove(&varying)
             {

@@ -4,27 +4,27 @@ use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced, turned};
 
 use hodograph_model::arithmetic::sin_cos;
 
-/// How many states a block has: so many that finding out what a step does costs little beside doing it, and
-/// so few that the slots of large mechanisms stay in a core's own cache. (Quadruped, 421 slots, 215 kB: 64
-/// states take 0.80 of the time of 32 per state, 128 take 0.74.)
+/// Number of states in a block. It is so large that dispatching a step costs little beside its arithmetic,
+/// and so small that the slots of large mechanisms fit into the core's own cache. (Quadruped, 421 slots, 215
+/// kB: with 64 states in a block a state takes 0.80 of the time that it takes with 32, with 128 states 0.74.)
 pub const LANES: usize = 64;
-/// How many of them are computed before any result is stored: a result may then take the place of an operand.
+/// Number of states that are computed before any result is stored, so that a result may overwrite an operand.
 pub const WIDTH: usize = 8;
 
-/// One number of every state of a block.
+/// One value for every state of a block.
 pub type Slot = [[f64; WIDTH]; LANES / WIDTH];
 
-/// Where an operand is.
+/// The place of an operand.
 pub trait Operand: Copy {
-    /// Its numbers for the states of a part of the block.
+    /// Its values for the states of one part of the block.
     fn part(self, slots: &[Slot], uniforms: &[f64], part: usize) -> [f64; WIDTH];
 }
 
-/// In the slot of this number.
+/// An operand in the slot with this index.
 #[derive(Clone, Copy)]
 pub struct InSlot(pub u32);
 
-/// The same for all states: the uniform of this number.
+/// An operand that is the same for all states: the uniform with this index.
 #[derive(Clone, Copy)]
 pub struct Uniform(pub u32);
 
@@ -42,18 +42,18 @@ impl Operand for Uniform {
     }
 }
 
-/// The numbers that steps work on.
+/// The storage of the steps.
 pub struct Numbers<'a> {
-    /// one number of every state
+    /// one value for every state
     pub slots: &'a mut [Slot],
-    /// one number for all states
+    /// one value for all states
     pub uniforms: &'a [f64],
-    /// how many parts of a block hold states; the others are not computed
+    /// number of parts of the block that hold states; the others are not computed
     pub parts: usize,
 }
 
 impl Numbers<'_> {
-    /// A function of one operand.
+    /// Applies a function of one operand.
     #[inline(always)]
     pub fn one<A: Operand>(&mut self, to: u32, a: A, f: impl Fn(f64) -> f64) {
         for part in 0..self.parts.min(LANES / WIDTH) {
@@ -63,7 +63,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// A function of two operands.
+    /// Applies a function of two operands.
     #[inline(always)]
     pub fn two<A: Operand, B: Operand>(&mut self, to: u32, a: A, b: B, f: impl Fn(f64, f64) -> f64) {
         for part in 0..self.parts.min(LANES / WIDTH) {
@@ -74,7 +74,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// A function of three operands.
+    /// Applies a function of three operands.
     #[inline(always)]
     pub fn three<A: Operand, B: Operand, C: Operand>(
         &mut self,
@@ -102,7 +102,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Sines and cosines of angles, which both slices hold: for each what [`sin_cos`] gives, to the last bit.
+/// Replaces the angles, which both slices hold, by their sines and cosines, bit for bit those of [`sin_cos`].
 #[inline(never)]
 fn sines_cosines(sines: &mut [f64], cosines: &mut [f64]) {
     let within = sines.iter().fold(true, |within, &angle| within & is_within(angle));
@@ -128,7 +128,7 @@ mod tests {
         let edges = [0.0, -0.0, 5e-324, -1e-300, 524_288.0, -524_287.5, 0.3, 1.0];
         let beyond = [1e9, f64::NAN, f64::INFINITY, 0.5, -1e300, 2.0, -0.0, 524_289.0];
         let all: Vec<f64> = spread.chain(right).chain(edges).chain(beyond).collect();
-        // none of the angles is left out
+        // no remainder of fewer than WIDTH angles
         assert!(all.len().is_multiple_of(WIDTH));
         for angles in all.chunks(LANES) {
             let (mut sines, mut cosines) = (angles.to_vec(), angles.to_vec());

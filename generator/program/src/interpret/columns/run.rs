@@ -1,4 +1,4 @@
-//! The steps on a block of states.
+//! Executes the steps on a block of states.
 
 use super::compile::{Code, Columns, Step};
 use super::lanes::{InSlot, LANES, Numbers, Operand, Slot, Uniform, WIDTH};
@@ -7,17 +7,17 @@ use crate::interpret::prepared::{Failed, holds};
 use crate::program::VANISHING;
 use hodograph_model::arithmetic::{call, call2, mul_add};
 
-/// What a batch needs beside its results.
+/// The work space of a batch.
 pub struct Scratch {
     slots: Vec<Slot>,
     uniforms: Vec<f64>,
     /// the results of a block
     pub results: Vec<Slot>,
-    /// why its states have none
+    /// why states of the block have no results
     pub failures: [Option<Failed>; LANES],
-    /// the first check that each state fails
+    /// for each state the first failed check, and whether its value is finite
     failed: [(u32, bool); LANES],
-    /// 0 where all results are finite so far
+    /// 0 for each state whose results so far are all finite
     finite: Slot,
 }
 
@@ -81,8 +81,8 @@ impl Columns {
 }
 
 impl Scratch {
-    /// Notes the states in which a value vanishes beside a scale. What is checked first in
-    /// [`crate::interpret::Prepared`] is reported.
+    /// Records the states in which a value vanishes relative to a scale. The failure that is reported is the
+    /// one that [`crate::interpret::Prepared`] finds first.
     #[inline(always)]
     fn check<A: Operand, B: Operand>(&mut self, check: u32, value: A, scale: Option<B>) {
         let (mut values, mut bounds) = (ZERO, ZERO);
@@ -105,7 +105,7 @@ impl Scratch {
     }
 }
 
-/// An operation; each is that of [`crate::program::operate`] in doubles.
+/// Executes an operation; it agrees with [`crate::program::operate`] in doubles.
 #[inline(always)]
 fn compute(step: &Step, mut on: Numbers<'_>) {
     use Code::*;

@@ -3,7 +3,7 @@
 use super::lanes::{LANES, Slot, WIDTH};
 use crate::program::graph::Input;
 
-/// A column of numbers, borrowed: that of row `i` stands at `i * stride`.
+/// A borrowed column of numbers: that of row `i` is at `i * stride`.
 #[derive(Clone, Copy, Debug)]
 pub struct Column<'a> {
     numbers: &'a [f64],
@@ -16,8 +16,8 @@ impl<'a> Column<'a> {
         Column { numbers, stride: 1 }
     }
 
-    /// Every `stride`-th of the numbers, as the columns of a matrix stand that is stored by rows. The stride
-    /// 0 gives the first number to all rows.
+    /// Every `stride`-th of the numbers, for a column of a matrix stored by rows. With the stride 0 all rows
+    /// have the first number.
     pub fn strided(numbers: &'a [f64], stride: usize) -> Self {
         Column { numbers, stride }
     }
@@ -27,12 +27,12 @@ impl<'a> Column<'a> {
         (0..columns).map(|column| Column::strided(matrix.get(column..).unwrap_or(&[]), columns)).collect()
     }
 
-    /// The number of a row; what is not there is not a number.
+    /// The number in a row; NaN if there is none.
     pub fn get(&self, row: usize) -> f64 {
         self.numbers.get(row * self.stride).copied().unwrap_or(f64::NAN)
     }
 
-    /// The numbers of a block; the last one fills what is left over of its part.
+    /// Copies the numbers of a block. The last number fills the remaining lanes of the last part.
     #[inline]
     pub(super) fn gather(&self, first: usize, count: usize, slot: &mut Slot) {
         let slot = slot.as_flattened_mut();
@@ -48,13 +48,13 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Many states. Numbers stand in the order of the model, in the units that it declares; columns that are
-/// missing hold no numbers.
+/// Inputs for many states, in file order and in the units that the model declares. Missing columns read as
+/// NaN.
 #[derive(Clone, Debug, Default)]
 pub struct Table<'a> {
     /// how many states
     pub rows: usize,
-    /// time, s; none means 0
+    /// time in s; `None` means 0
     pub time: Option<Column<'a>>,
     /// coordinates
     pub coordinates: Vec<Column<'a>>,

@@ -1,4 +1,4 @@
-//! Columns against [`Prepared`]: the same bits and the same errors.
+//! Compares columns with [`Prepared`]: the same bits and the same errors.
 
 use super::*;
 use crate::artifact;
@@ -6,7 +6,7 @@ use crate::interpret::prepared::{Arguments, Constants, Failed, Prepared};
 use crate::program::operation::{Bits, Operation as O, Value};
 use crate::program::{Guard, Output, Program, Quantity, graph::Input};
 
-/// A program in which every form of every operation occurs, with guards whose scale varies and does not.
+/// A program with every form of every operation, and with guards whose scale varies or is constant.
 fn program() -> Program {
     use hodograph_model::arithmetic::Function as F;
     let mut operations = vec![
@@ -59,7 +59,7 @@ fn program() -> Program {
     }
 }
 
-/// Every kind of state that has no results, among states that have some.
+/// States with every kind of failure among states that have results.
 fn states(rows: usize) -> [Vec<f64>; 3] {
     let number = |row: usize, step: f64| (row as f64 * step).sin() * 3.0;
     let mut all =
@@ -158,7 +158,7 @@ fn other_parameters() {
 }
 
 #[test]
-fn columns_that_are_missing_or_short_hold_no_numbers() {
+fn missing_columns_and_rows_are_nan() {
     let artifact = artifact::decode(include_str!("../../../tests/golden/pendulum.derivation")).unwrap();
     let constants = Constants::new(&artifact.program, &[1.3, 0.7, 9.81]);
     let columns = Columns::new(&artifact.program, &constants, &[Quantity::Accelerations]);

@@ -1,6 +1,6 @@
-//! The sensitivity of the outputs of a program to rounding errors of its operations: evaluates the program at
-//! sample states and differentiates backwards (adjoints), relative to the largest entry of each output. The
-//! numbers are the same on every machine.
+//! The sensitivity of the outputs of a program to rounding errors of its operations. The program is evaluated
+//! at sample states and differentiated backwards (adjoints); errors are relative to the largest entry of each
+//! output. The results are the same on every machine.
 
 use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Value};
@@ -9,22 +9,23 @@ use crate::program::straight_line::Program;
 use hodograph_model::arbitrary::Arbitrary;
 use hodograph_model::arithmetic::reproducible::Reproducible;
 
-/// Sums of answers with random signs that stand for all of them.
-const MIXTURES: u64 = 4;
-/// An answer that is at most this times the largest of all numbers is one that vanishes identically: nothing
-/// is relative to it.
-const NOTHING: f64 = 1e-24;
+/// Number of random linear combinations of the outputs that stand for all outputs.
+const COMBINATIONS: u64 = 4;
+/// An output whose entries are at most this times the largest of all values vanishes identically; it is left
+/// out, since errors relative to it have no meaning.
+const NEGLIGIBLE: f64 = 1e-24;
 
-/// A sample state.
-pub struct Weighed {
-    /// the value of each operation; of a sine-cosine pair both
+/// A sample state with the sensitivities there.
+pub struct Sensitivity {
+    /// value of each operation; both of a sine-cosine pair
     numbers: Vec<(f64, f64)>,
-    /// per value, the mean square of what an error of 1 does to an answer; 0 where that is no number
+    /// for each value the mean square of the error of an output that an error of 1 causes; 0 if that is not
+    /// finite
     pub weights: Vec<f64>,
 }
 
-impl Weighed {
-    /// Evaluates a program at a state; the signs of the mixtures follow from the seed.
+impl Sensitivity {
+    /// Evaluates a program at a state; the seed determines the signs of the combinations.
     pub fn new(program: &Program, state: &Inputs, seed: u64) -> Self {
         let mut exact: Vec<(Reproducible, Reproducible)> = Vec::with_capacity(program.operations.len());
         for &operation in &program.operations {
@@ -33,35 +34,35 @@ impl Weighed {
         }
         let numbers: Vec<(f64, f64)> = exact.iter().map(|(a, b)| (a.rounded(), b.rounded())).collect();
         let sizes = numbers.iter().map(|number| number.0.abs()).filter(|size| size.is_finite());
-        let nothing = NOTHING * sizes.fold(0.0, f64::max);
+        let negligible = NEGLIGIBLE * sizes.fold(0.0, f64::max);
         let mut arbitrary = Arbitrary::after(0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * seed + 1));
         let mut sign = || if arbitrary.bits() >> 63 == 0 { 1.0 } else { -1.0 };
         let mut weights = vec![0.0; numbers.len()];
-        for _ in 0..MIXTURES {
+        for _ in 0..COMBINATIONS {
             let mut slopes = vec![0.0; numbers.len()];
             for output in &program.outputs {
                 let entries = || output.values.iter().map(|value| value.index());
                 let largest = entries().fold(0.0f64, |largest, index| largest.max(numbers[index].0.abs()));
-                if largest > nothing && entries().all(|index| numbers[index].0.is_finite()) {
+                if largest > negligible && entries().all(|index| numbers[index].0.is_finite()) {
                     entries().for_each(|index| slopes[index] += sign() / largest);
                 }
             }
             backwards(program, &numbers, &mut slopes);
             for (weight, slope) in weights.iter_mut().zip(slopes) {
-                let square = slope * slope / MIXTURES as f64;
+                let square = slope * slope / COMBINATIONS as f64;
                 *weight += if square.is_finite() { square } else { 0.0 };
             }
         }
-        Weighed { numbers, weights }
+        Sensitivity { numbers, weights }
     }
 
-    /// The number of a value.
+    /// The number of a value at this state.
     pub fn number(&self, value: Value) -> f64 {
         self.numbers[value.index()].0
     }
 }
 
-/// From slopes of the last results to those of all values they were computed from.
+/// Propagates derivatives with respect to later values back to all values from which they were computed.
 fn backwards(program: &Program, numbers: &[(f64, f64)], slopes: &mut [f64]) {
     use Operation::*;
     let of = |value: Value| numbers[value.index()].0;
@@ -116,7 +117,7 @@ fn backwards(program: &Program, numbers: &[(f64, f64)], slopes: &mut [f64]) {
                     to(angle, -numbers[pair.index()].0);
                 }
             }
-            // What errors of their arguments do matters little: arguments are inputs, or nearly so.
+            // Errors of the arguments of functions matter little: arguments are inputs, or nearly so.
             Call(..) | Call2(..) => {}
         }
     }
@@ -129,14 +130,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_weight_is_the_square_of_the_slope_relative_to_the_answer() {
+    fn a_weight_is_the_square_of_the_slope_relative_to_the_output() {
         let derived = small(|g| {
             let [a, b, c, _] = speeds(g);
             let product = g.product([a, b]);
             vec![g.sum([product, c])]
         });
         let program = lower(&derived);
-        let weighed = Weighed::new(&program, &inputs(), 1);
+        let weighed = Sensitivity::new(&program, &inputs(), 1);
         let answer = weighed.number(program.outputs[0].values[0]);
         for (index, operation) in program.operations.iter().enumerate() {
             let expected = match operation {
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_that_vanish_identically_do_not_count() {
+    fn outputs_that_vanish_identically_do_not_count() {
         use hodograph_model::arithmetic::Function::{Cos, Sin};
         let mut derived = small(|g| speeds(g)[..1].to_vec());
         let g = &mut derived.graph;
@@ -167,7 +168,7 @@ mod tests {
         };
         derived.outputs.push(more);
         let (program, speeds) = (lower(&derived), vec![0.3, 0.0, 0.0, 0.0]);
-        let weighed = Weighed::new(&program, &Inputs { speeds, ..inputs() }, 1);
+        let weighed = Sensitivity::new(&program, &Inputs { speeds, ..inputs() }, 1);
         let [speed, zero] = [0, 1].map(|output: usize| program.outputs[output].values[0]);
         assert!((weighed.weights[speed.index()] * 0.09 - 1.0).abs() < 1e-12);
         assert_eq!((weighed.weights[zero.index()], weighed.number(zero) != 0.0), (0.0, true));
@@ -186,7 +187,7 @@ mod tests {
             vec![g.sum([first, second])]
         });
         let program = super::super::contract::contract(&lower(&derived));
-        let at = |speeds: Vec<f64>| Weighed::new(&program, &Inputs { speeds, ..inputs() }, 1);
+        let at = |speeds: Vec<f64>| Sensitivity::new(&program, &Inputs { speeds, ..inputs() }, 1);
         let speeds = inputs().speeds;
         let there = at(speeds.clone());
         let output = program.outputs[0].values[0];

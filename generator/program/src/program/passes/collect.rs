@@ -1,4 +1,4 @@
-//! Collects like terms of sums; opens sums that only one sum uses; makes the first coefficient positive.
+//! Collects like terms of sums, opens sums that only one sum uses, and makes the first coefficient positive.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ pub fn collect(derived: &Derived) -> Derived {
     })
 }
 
-/// Whether the sum in a term may be opened, that is, whether this term alone uses it.
+/// Whether the sum in a term may be opened, that is, whether only this term uses it.
 fn opens(graph: &Graph, survey: &Survey, term: Node) -> bool {
     match graph.kind(term) {
         NodeKind::Sum(_) => true,
@@ -76,7 +76,7 @@ impl Collected {
         self.terms.insert(node, Number(sum));
     }
 
-    /// The sum, with a common magnitude of all coefficients and the sign of the first in front.
+    /// The sum, with the common magnitude of all coefficients and the sign of the first taken out.
     fn finish(self, graph: &mut Graph) -> Node {
         let mut parts: Vec<(Number, Option<Node>)> =
             self.terms.into_iter().map(|(node, number)| (number, Some(node))).collect();
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cancels_is_exactly_zero() {
+    fn terms_that_cancel_give_exactly_zero() {
         let derived = small(|g| {
             let [a, b, ..] = speeds(g);
             let (product, same) = (g.product([a, b]), g.product([b, a]));

@@ -1,7 +1,7 @@
-//! Shares parts of sums and products: x y z and x y w become (x y) z and (x y) w, and a + b - c and c - a - b
-//! the same sum.
+//! Shares parts of sums and products. For example, x y z and x y w become (x y) z and (x y) w; a + b - c and
+//! c - a - b become the same sum and its negative.
 //!
-//! What is known at construction counts as one factor or term, for it becomes one hoisted value.
+//! The factors or terms known at construction count as a single one, since they become one hoisted value.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::program::graph::{Graph, Node, NodeKind};
 use crate::program::operation::Stage;
 use hodograph_model::number::Number;
 
-/// Shares parts.
+/// Computes common parts of sums and products once.
 pub fn share(derived: &Derived) -> Derived {
     let derived = separate_signs(derived);
     let survey = Survey::new(&derived);
@@ -48,8 +48,8 @@ enum Kind {
     Product,
 }
 
-/// Negative numbers in front become a product with -1 around the positive product, so that both signs share
-/// it.
+/// Rewrites products with a negative number as -1 times a positive product, so that both signs share the
+/// positive product.
 fn separate_signs(derived: &Derived) -> Derived {
     let survey = Survey::new(derived);
     rewrite(derived, &survey, |graph, old, renamed| {
@@ -86,7 +86,7 @@ fn join(graph: &mut Graph, kind: Kind, mut nodes: Vec<Node>) -> Node {
     graph.intern(if kind == Kind::Sum { NodeKind::Sum(nodes) } else { NodeKind::Product(nodes) })
 }
 
-/// Items beyond the nodes of the old graph, and the new nodes of those that are built.
+/// New items that are not nodes of the old graph, and the new nodes of those that are built.
 struct Parts {
     first: u32,
     parts: Vec<Part>,
@@ -94,7 +94,7 @@ struct Parts {
     built: BTreeMap<u32, Node>,
 }
 
-/// What is known at construction, as one item: a kind, a number, and old nodes.
+/// Factors or terms known at construction, as one item: whether it is a product, a number, and old nodes.
 type Early = (bool, Number, Vec<Node>);
 
 enum Part {
@@ -179,8 +179,8 @@ impl Parts {
         items
     }
 
-    /// The new node of an item. Its parts are old nodes that are renamed already, for they come before
-    /// whatever lists them.
+    /// The new node of an item. Its parts are old nodes that have been renamed already, since they precede
+    /// every node that uses them.
     fn build(&mut self, graph: &mut Graph, renamed: &Renamed, id: u32) -> Node {
         let Some(part) = id.checked_sub(self.first).and_then(|index| self.parts.get(index as usize)) else {
             return renamed.of(Node(id));
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sum_and_its_opposite_are_one() {
+    fn a_sum_and_its_negative_share_a_value() {
         let derived = small(|g| {
             let [a, b, c, d] = speeds(g);
             let minus = g.neg(c);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_at_construction_counts_as_one_factor() {
+    fn factors_known_at_construction_count_as_one() {
         let derived = small(|g| {
             let ([a, b, ..], [m, l, _]) = (speeds(g), parameters(g));
             vec![g.product([m, l, a]), g.product([m, l, b])]
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn what_occurs_once_keeps_its_operations() {
+    fn parts_that_occur_once_keep_their_operations() {
         let derived = small(|g| {
             let [a, b, c, d] = speeds(g);
             vec![g.product([a, b]), g.sum([c, d])]

@@ -1,16 +1,16 @@
-//! Contracts a * b + c to one operation where the product is used in sums only, so that no product is
-//! computed twice.
+//! Contracts a * b + c to one operation if the product is used in sums only, so that no product is computed
+//! twice.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::straight_line::Program;
 
-/// Marks fused operations; the products that go into them are left for [`super::dead_code`]. A product whose
-/// sum is followed by what rounding takes from it stays: that is told from the rounded product.
+/// Introduces fused operations and leaves the unused products to [`super::dead_code`]. A product stays if the
+/// rounding error of its sum is computed, since that computation needs the rounded product.
 pub fn contract(program: &Program) -> Program {
     let stages = program.stages();
-    let rounded = terms_told_from_their_sum(program);
+    let rounded = terms_of_two_sums(program);
     let mut uses: HashMap<Value, Uses> = HashMap::new();
     for operation in &program.operations {
         let in_sum = matches!(operation, Operation::Add(..) | Operation::Sub(..));
@@ -52,8 +52,8 @@ pub fn contract(program: &Program) -> Program {
     Program { operations, ..program.clone() }
 }
 
-/// The terms a and b of sums t = a + b or a - b of which t - a is computed too, as in Knuth's two-sum.
-fn terms_told_from_their_sum(program: &Program) -> HashSet<Value> {
+/// The terms a and b of sums t = a + b or a - b for which t - a is computed, too, as in Knuth's two-sum.
+fn terms_of_two_sums(program: &Program) -> HashSet<Value> {
     let mut terms = HashSet::new();
     for &operation in &program.operations {
         if let Operation::Sub(total, term) = operation
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_product_that_is_wanted_itself_is_not_computed_twice() {
+    fn a_product_that_is_an_output_is_not_computed_twice() {
         let derived = small(|g| {
             let [a, b, c, _] = speeds(g);
             let product = g.product([a, b]);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_computed_at_construction_keeps_its_rounding() {
+    fn operations_at_construction_are_not_fused() {
         let derived = small(|g| {
             let [m, l, j] = super::super::testing::parameters(g);
             let product = g.product([m, l]);

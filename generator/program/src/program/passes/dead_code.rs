@@ -4,7 +4,7 @@ use crate::program::operation::Value;
 use crate::program::output::{Guard, Output};
 use crate::program::straight_line::Program;
 
-/// The same program without operations that nothing needs.
+/// The same program without operations that no output and no guard needs.
 pub fn remove(program: &Program) -> Program {
     let mut needed = vec![false; program.operations.len()];
     let outputs = program.outputs.iter().flat_map(|output| output.values.iter().copied());
@@ -50,7 +50,7 @@ mod tests {
     use crate::program::operation::Operation;
 
     #[test]
-    fn what_nothing_needs_goes_and_the_rest_is_renumbered() {
+    fn unused_operations_are_removed_and_the_rest_is_renumbered() {
         let mut program = lower(&small(|g| {
             let [a, b, ..] = speeds(g);
             vec![g.product([a, b])]
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_a_guard_looks_at_stays() {
+    fn operands_of_guards_stay() {
         let mut program = lower(&small(|g| vec![speeds(g)[0]]));
         program.operations.push(Operation::Neg(Value(0)));
         program.guards = vec![Guard { value: Value(1), scale: None, message: String::new() }];

@@ -1,25 +1,25 @@
-//! Computes values once that are identically equal although their operations differ: two factored forms of
-//! one sum, or the same quantity in programs that went through the passes on their own.
+//! Computes identically equal values once, even if their operations differ: two factored forms of one sum, or
+//! the same quantity in programs that went through the passes separately.
 //!
-//! Values are compared modulo primes ([`super::modular`]). The first of equal values stays, so that operands stay
-//! before their use, where it is as accurate as the second: no sum stands for a product, since terms may cancel
-//! where factors do not, and at the sample states the bound of its rounding error is no larger than twice that
-//! of the second.
+//! Values are compared modulo primes ([`super::modular`]). The first of equal values stays, so that operands
+//! stay before their use, but only if it is as accurate as the second: a sum does not replace a product,
+//! since its terms may cancel where factors do not, and at the sample states the bound of its rounding error
+//! may be at most twice that of the second.
 
 use std::collections::{HashMap, HashSet};
 
-use super::adjoint::Weighed;
+use super::adjoint::Sensitivity;
 use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::straight_line::Program;
 use hodograph_model::graph::modular::Residues;
 
-/// A value may stand for another if the bound of its rounding error is at most this many times the other's.
+/// A value may replace another if the bound of its rounding error is at most this many times the other's.
 const AS_ACCURATE: f64 = 2.0;
 
-/// The program in which no routine computes a value twice. A value takes the place of another only where every
-/// routine that needs the other computes it too, so that none becomes longer. Values that are checked stay, since
-/// others need not be checked.
+/// The program in which no routine computes equal values twice. A value replaces another only if every
+/// routine that needs the other computes it, too, so that no routine becomes longer. Guarded values are not
+/// replaced.
 pub fn share(program: &Program, states: &[Inputs]) -> Program {
     let count = program.operations.len();
     let words = program.outputs.len().div_ceil(64);
@@ -52,12 +52,13 @@ pub fn share(program: &Program, states: &[Inputs]) -> Program {
     renamed(program, &first_equal(program, may_replace), &checked)
 }
 
-/// For each value the first that is equal to it and may replace it, itself if there is none.
+/// For each value the first that equals it and may replace it; the value itself if there is none.
 fn first_equal(program: &Program, may_replace: impl Fn(Value, Value) -> bool) -> Vec<Value> {
     let mut found: HashMap<Residues, Vec<Value>> = HashMap::new();
     let mut first: Vec<Value> = (0..program.operations.len() as u32).map(Value).collect();
     for (value, residues) in first.clone().into_iter().zip(program.residues()) {
-        // A constant or an input takes no work. A pair has the residue of its angle, but is another thing.
+        // Constants and inputs take no work. A sine-cosine pair has the residue of its angle, but is a
+        // different value.
         let takes_work = !matches!(
             program.operation(value),
             Operation::Constant(_) | Operation::Input(_) | Operation::SinCos(_)
@@ -72,11 +73,11 @@ fn first_equal(program: &Program, may_replace: impl Fn(Value, Value) -> bool) ->
     first
 }
 
-/// A bound of the rounding error of every value at a state, in units of rounding: to the first order, with one
-/// unit of its result for each operation. What depends on parameters alone is rounded once.
+/// A bound of the rounding error of every value at a state, in units of rounding, to first order: each
+/// operation adds one unit of its result. Values that depend on parameters alone are rounded once.
 fn errors(program: &Program, state: &Inputs, seed: u64, stages: &[Stage]) -> Vec<f64> {
     use Operation::*;
-    let weighed = Weighed::new(program, state, seed);
+    let weighed = Sensitivity::new(program, state, seed);
     let size = |value: Value| weighed.number(value).abs();
     let mut errors: Vec<f64> = Vec::with_capacity(program.operations.len());
     for (index, &operation) in program.operations.iter().enumerate() {
@@ -96,14 +97,14 @@ fn errors(program: &Program, state: &Inputs, seed: u64, stages: &[Stage]) -> Vec
         };
         let rounds = !matches!(operation, Constant(_) | Input(_) | Neg(_));
         let error = carried + if rounds { size(value) } else { 0.0 };
-        // Where a state gives no number it tells nothing.
+        // A state at which a value is not finite gives no information.
         errors.push(if error.is_finite() { error } else { 0.0 });
     }
     errors
 }
 
-/// The program with other operands in the place of some, and with one value for operations that are the same then,
-/// but for those that are checked. Values keep their numbers.
+/// The program with each value replaced by the first value that equals it. Operations that become equal by
+/// this are merged, unless they are guarded. Values keep their indices.
 fn renamed(program: &Program, first: &[Value], checked: &HashSet<Value>) -> Program {
     let mut known: HashMap<Operation, Value> = HashMap::new();
     let mut names: Vec<Value> = Vec::with_capacity(first.len());
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_another_routine_lacks_does_not_replace() {
+    fn a_value_of_one_routine_does_not_replace_that_of_another() {
         let alone = of_two(|graph| {
             let [factored, expanded] = two_forms(graph);
             [vec![factored], vec![expanded]]
@@ -246,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_checked_stays() {
+    fn guarded_values_stay() {
         let mut derived = small(|graph| two_forms(graph).to_vec());
         let checked = derived.outputs[0].values[1];
         derived.guards = vec![Guard { value: checked, scale: None, message: "checked".into() }];
@@ -255,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_takes_from_angles_is_not_touched() {
+    fn rounding_errors_of_angles_stay() {
         let angles = |graph: &mut Graph| {
             let [a, b, c] = [0, 1, 2].map(|index| graph.input(Input::Coordinate(index)));
             let (two, three) = (graph.integer(2), graph.integer(3));

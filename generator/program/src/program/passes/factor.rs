@@ -1,6 +1,6 @@
-//! Takes common factors out of sums: a b + a c -> a (b + c), where the products are used in this sum only.
+//! Takes common factors out of sums: a b + a c -> a (b + c), if the products are used in this sum only.
 //!
-//! Factors known at construction (parameters and numbers) count as one coefficient, for their product is
+//! Factors known at construction (parameters and numbers) count as one coefficient, since their product is
 //! computed once. So m1 l c + m2 l c becomes (m1 l + m2 l) c, whose bracket costs nothing at run time.
 
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ pub fn factor(derived: &Derived) -> Derived {
     })
 }
 
-/// The stages of the nodes of a graph that grows.
+/// The stages of the nodes of a growing graph.
 #[derive(Default)]
 struct Stages(Vec<Stage>);
 
@@ -43,7 +43,7 @@ impl Stages {
     }
 }
 
-/// A term: number, product of what is known at construction, other factors.
+/// A term: number, factors known at construction, other factors.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Term {
     number: Number,
@@ -51,12 +51,12 @@ struct Term {
     late: Vec<Node>,
 }
 
-/// What can be taken out.
+/// A factor that can be taken out.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Factor {
-    /// one late factor
+    /// a single factor that is not known at construction
     Late(Node),
-    /// the whole coefficient: magnitude of the number, and what is known at construction
+    /// the whole coefficient: magnitude of the number, and factors known at construction
     Coefficient(Number, Vec<Node>),
 }
 
@@ -78,7 +78,7 @@ impl Term {
         }
     }
 
-    /// Removes a factor that is there.
+    /// Removes a factor that the term has.
     fn remove(&mut self, factor: &Factor) {
         match factor {
             Factor::Late(node) => {
@@ -93,7 +93,7 @@ impl Term {
         }
     }
 
-    /// What it could share with others.
+    /// The factors that a term may have in common with others.
     fn candidates(&self) -> Vec<Factor> {
         let mut candidates: Vec<Factor> = self.late.iter().map(|&node| Factor::Late(node)).collect();
         candidates.dedup();
@@ -115,7 +115,7 @@ impl Term {
     }
 }
 
-/// The product, equal factors as powers.
+/// The product of nodes, with equal factors as powers.
 fn product(graph: &mut Graph, all: &[Node]) -> Node {
     let mut counts: BTreeMap<Node, i32> = BTreeMap::new();
     for &factor in all {
@@ -132,12 +132,12 @@ fn product(graph: &mut Graph, all: &[Node]) -> Node {
     graph.product(powers)
 }
 
-/// The sum of terms, of which `owned` belong to it alone.
+/// The sum of terms, of which `owned` are used in this sum only.
 fn sum(graph: &mut Graph, stages: &mut Stages, mut owned: Vec<Term>, mut others: Vec<Node>) -> Node {
     while let Some(best) = best(&owned) {
         let (mut group, rest): (Vec<Term>, Vec<Term>) = owned.into_iter().partition(|term| term.has(&best));
         owned = rest;
-        // Whatever else all of them have comes out too.
+        // Other factors that all of these terms have come out, too.
         let mut common = vec![best];
         group.iter_mut().for_each(|term| term.remove(&common[0]));
         while let Some(factor) =
@@ -176,7 +176,7 @@ fn best(terms: &[Term]) -> Option<Factor> {
         }
     }
     let gain = |factor: &Factor, count: usize| {
-        // Where only coefficients remain, their sum is computed at construction.
+        // If only coefficients remain, their sum is computed at construction.
         let group = || terms.iter().filter(|term| term.has(factor));
         let early = matches!(factor, Factor::Late(_)) && group().all(|term| term.late.len() == 1);
         if early { 3 * (count - 1) } else { count - 1 }
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_at_construction_is_left_alone() {
+    fn sums_known_at_construction_stay() {
         let derived = small(|g| {
             let [m1, m2, l] = parameters(g);
             let products = [g.product([m1, l]), g.product([m2, l])];

@@ -1,8 +1,8 @@
-//! Flattens nested sums of operations to lists of terms, and builds them again in another order.
+//! Flattens nested sums of operations to lists of terms, and rebuilds them in another order.
 
 use std::collections::HashMap;
 
-use super::adjoint::Weighed;
+use super::adjoint::Sensitivity;
 use crate::program::operation::{Bits, Operation, Stage, Value};
 use crate::program::straight_line::Program;
 
@@ -10,43 +10,43 @@ use crate::program::straight_line::Program;
 #[derive(Clone, Debug)]
 pub struct Term {
     negative: bool,
-    what: What,
+    kind: TermKind,
 }
 
 #[derive(Clone, Debug)]
-enum What {
+enum TermKind {
     Value(Value),
     Product(Value, Value),
-    /// values that are known at construction: their sum is one value
+    /// terms that are known at construction: their sum is one value
     Known(Vec<Term>),
 }
 
 impl Term {
     fn value(negative: bool, value: Value) -> Self {
-        Term { negative, what: What::Value(value) }
+        Term { negative, kind: TermKind::Value(value) }
     }
 
     fn product(negative: bool, a: Value, b: Value) -> Self {
-        Term { negative, what: What::Product(a, b) }
+        Term { negative, kind: TermKind::Product(a, b) }
     }
 
     /// Whether it is a product, which a fused operation adds without rounding it.
     pub fn is_product(&self) -> bool {
-        matches!(self.what, What::Product(..))
+        matches!(self.kind, TermKind::Product(..))
     }
 
-    /// Its number at a state.
-    pub fn number(&self, state: &Weighed) -> f64 {
-        let number = match &self.what {
-            What::Value(value) => state.number(*value),
-            What::Product(a, b) => state.number(*a) * state.number(*b),
-            What::Known(terms) => terms.iter().map(|term| term.number(state)).sum(),
+    /// Its value at a state.
+    pub fn number(&self, state: &Sensitivity) -> f64 {
+        let number = match &self.kind {
+            TermKind::Value(value) => state.number(*value),
+            TermKind::Product(a, b) => state.number(*a) * state.number(*b),
+            TermKind::Known(terms) => terms.iter().map(|term| term.number(state)).sum(),
         };
         if self.negative { -number } else { number }
     }
 }
 
-/// How many operations, outputs and guards refer to a value.
+/// Number of operations, outputs and guards that refer to each value.
 fn uses(program: &Program) -> Vec<u32> {
     let mut uses = vec![0; program.operations.len()];
     let operands = program.operations.iter().flat_map(|operation| operation.operands());
@@ -63,12 +63,12 @@ pub struct Sums<'a> {
     uses: Vec<u32>,
 }
 
-/// A sum taken apart.
+/// A sum as a list of terms.
 #[derive(Default)]
 pub struct Sum {
     /// its terms
     pub terms: Vec<Term>,
-    /// the operations that serve this sum alone
+    /// operations that only this sum uses
     pub inner: Vec<Value>,
 }
 
@@ -78,28 +78,28 @@ impl<'a> Sums<'a> {
         Sums { program, stages: program.stages(), uses: uses(program) }
     }
 
-    /// When a value can be computed.
+    /// The stage of a value.
     pub fn stage(&self, value: Value) -> Stage {
         self.stages[value.index()]
     }
 
-    /// The terms of a sum; none of any other operation.
+    /// The terms of a sum; a sum without terms for any other operation.
     pub fn open(&self, value: Value) -> Sum {
         let mut sum = Sum::default();
         self.take(value, &mut sum);
-        let is_known = |term: &Term| match term.what {
-            What::Value(value) => self.stages[value.index()] <= Stage::Parameter,
+        let is_known = |term: &Term| match term.kind {
+            TermKind::Value(value) => self.stages[value.index()] <= Stage::Parameter,
             _ => false,
         };
         if sum.terms.iter().filter(|term| is_known(term)).count() > 1 {
             let (known, late) = sum.terms.into_iter().partition(is_known);
             sum.terms = late;
-            sum.terms.push(Term { negative: false, what: What::Known(known) });
+            sum.terms.push(Term { negative: false, kind: TermKind::Known(known) });
         }
         sum
     }
 
-    /// The two parts of a sum; `None` of any other operation.
+    /// The two operands of a sum; `None` for any other operation.
     fn parts(&self, value: Value, negative: bool) -> Option<[Part; 2]> {
         let (rest, part) = match self.program.operation(value) {
             Operation::Add(a, b) => ((a, negative), Part::Value(negative, b)),
@@ -112,7 +112,7 @@ impl<'a> Sums<'a> {
         Some([Part::Value(rest.1, rest.0), part])
     }
 
-    /// Takes a sum apart. Sums may be nested as deep as they are long, so what is still to do is a list.
+    /// Flattens a sum. Sums may be nested very deep, so an explicit stack replaces recursion.
     fn take(&self, value: Value, sum: &mut Sum) {
         let mut left: Vec<Part> = self.parts(value, false).into_iter().flatten().rev().collect();
         while let Some(part) = left.pop() {
@@ -123,7 +123,7 @@ impl<'a> Sums<'a> {
                 }
                 Part::Value(negative, value) => (negative, value),
             };
-            // What is known at construction is left together.
+            // Terms that are known at construction stay together.
             let alone = self.uses[value.index()] == 1 && self.stages[value.index()] > Stage::Parameter;
             let parts = match self.program.operation(value) {
                 _ if !alone => None,
@@ -141,14 +141,14 @@ impl<'a> Sums<'a> {
     }
 }
 
-/// What of a sum is still to be taken apart, with its sign.
+/// A part of a sum that is still to be flattened, with its sign.
 enum Part {
     Value(bool, Value),
     Product(bool, Value, Value),
 }
 
-/// The program with the sums that are planned; equal operations are one.
-pub fn put_together(program: &Program, plans: &[Option<Vec<Term>>]) -> Program {
+/// The program with the sums of the plans in place of the old ones; equal operations become one.
+pub fn rebuild(program: &Program, plans: &[Option<Vec<Term>>]) -> Program {
     let mut operations = Operations::default();
     let mut renamed: Vec<Value> = Vec::with_capacity(program.operations.len());
     for (&operation, plan) in program.operations.iter().zip(plans) {
@@ -187,15 +187,15 @@ impl Operations {
     }
 }
 
-/// Adds terms in this order: the sum, and whether its opposite is meant. A sum of negative terms is kept as
-/// the opposite.
+/// Adds terms in this order and returns the sum, and whether it is negated. A sum of negative terms is
+/// computed as the negative of a sum.
 fn add_up(terms: &[Term], of: &impl Fn(Value) -> Value, operations: &mut Operations) -> (Value, bool) {
     let mut sum: Option<(Value, bool)> = None;
     for term in terms {
-        let (value, minus) = match &term.what {
-            What::Value(value) => (of(*value), term.negative),
-            What::Known(terms) => add_up(terms, of, operations),
-            &What::Product(a, b) => {
+        let (value, minus) = match &term.kind {
+            TermKind::Value(value) => (of(*value), term.negative),
+            TermKind::Known(terms) => add_up(terms, of, operations),
+            &TermKind::Product(a, b) => {
                 let (a, b, minus) = (of(a), of(b), term.negative);
                 let (operation, sign) = match sum {
                     None => (Operation::Mul(a, b), minus),
@@ -215,7 +215,7 @@ fn add_up(terms: &[Term], of: &impl Fn(Value) -> Value, operations: &mut Operati
     sum.unwrap_or_else(|| (operations.push(Operation::Constant(Bits::new(0.0))), false))
 }
 
-/// Adds two values with their signs; numbers become a number.
+/// Adds two values with their signs; the sum of two constants is a constant.
 fn add(a: (Value, bool), b: (Value, bool), operations: &mut Operations) -> (Value, bool) {
     if let (Operation::Constant(first), Operation::Constant(second)) =
         (operations.list[a.0.index()], operations.list[b.0.index()])

@@ -31,7 +31,7 @@ pub fn fold(derived: &Derived) -> Derived {
             },
             _ => None,
         };
-        // What is not finite stays as it is: it becomes an error when it is evaluated.
+        // An infinite number or NaN stays as it is; evaluating it gives an error.
         match number.and_then(BigRational::from_float) {
             Some(number) => graph.number(Number(number)),
             None => node,
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_left_for_the_evaluation_to_report() {
+    fn numbers_that_are_not_finite_are_left_for_the_evaluation_to_report() {
         let root = |g: &mut Graph| {
             let minus = g.integer(-1);
             vec![g.call(Function::Sqrt, vec![minus])]

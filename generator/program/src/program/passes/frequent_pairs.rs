@@ -1,26 +1,26 @@
-//! Finds pairs of items that occur in several lists, the most frequent first: the common parts of sums and
-//! products.
+//! Finds the pairs of items that occur in several lists, the most frequent first: the common parts of sums
+//! and products.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
-/// An item of a list: an id, and for terms of sums whether it is subtracted.
+/// An item of a list: an id, and for terms of sums whether the term is subtracted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item {
-    /// what it is
+    /// the id
     pub id: u32,
-    /// whether it counts negative.
+    /// whether it is subtracted
     pub negative: bool,
 }
 
-/// Two items, the second relative to the first: both signs turned over mean the opposite of the same pair.
+/// Two items with a relative sign: pairs that differ in both signs count as the same pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair {
     /// the lesser id
     pub first: u32,
     /// the other
     pub second: u32,
-    /// whether they have opposite signs.
+    /// whether the two have opposite signs
     pub opposite: bool,
 }
 
@@ -31,11 +31,11 @@ impl Pair {
     }
 }
 
-/// Longer lists are left as they are: the search would take longer than it saves.
+/// Longer lists are left as they are, since the search would cost more than it saves.
 const LONGEST: usize = 1000;
 
-/// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` names the
-/// item of a pair.
+/// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` returns the
+/// item for a pair.
 pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
     let mut found = Found::default();
     for (index, list) in lists.iter().enumerate() {
@@ -52,7 +52,7 @@ pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
     while let Some((count, Reverse(pair))) = heap.pop() {
         let Some(at) = found.pairs.get(&pair) else { continue };
         if at.len() != count {
-            // Out of date: it has lost occurrences since, and is worth another look at its place.
+            // The count is out of date, because the pair has lost occurrences; sort it in again.
             if at.len() > 1 {
                 heap.push((at.len(), Reverse(pair)));
             }
@@ -65,7 +65,7 @@ pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
         let mut touched = BTreeSet::new();
         for index in at.clone() {
             let Some(list) = lists.get_mut(index) else { continue };
-            // Pairs of other items stay.
+            // Pairs without the two items stay.
             let is_part = |other: Item| [pair.first, pair.second].contains(&other.id);
             found.leave(index, list, is_part);
             replace(list, pair, item);
@@ -80,7 +80,7 @@ pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
     }
 }
 
-/// Puts the item of a pair in the place of the pair, as often as it occurs.
+/// Replaces every occurrence of a pair by its item.
 fn replace(list: &mut Vec<Item>, pair: Pair, item: u32) {
     while let Some((i, j)) = position(list, pair) {
         let negative = if list[i].id == pair.first { list[i].negative } else { list[j].negative };
@@ -102,14 +102,14 @@ fn position(list: &[Item], pair: Pair) -> Option<(usize, usize)> {
     None
 }
 
-/// Which lists have which pairs.
+/// The lists in which each pair occurs.
 #[derive(Default)]
 struct Found {
     pairs: BTreeMap<Pair, BTreeSet<usize>>,
 }
 
 impl Found {
-    /// Enters the pairs of a list of which one item at least is of interest; these pairs.
+    /// Records the pairs of a list of which at least one item satisfies `which`, and returns them.
     fn enter(&mut self, index: usize, list: &[Item], which: impl Fn(Item) -> bool) -> BTreeSet<Pair> {
         let pairs = pairs_of(list, which);
         for &pair in &pairs {
@@ -118,7 +118,7 @@ impl Found {
         pairs
     }
 
-    /// Takes such pairs out.
+    /// Removes such pairs from the record.
     fn leave(&mut self, index: usize, list: &[Item], which: impl Fn(Item) -> bool) {
         for pair in pairs_of(list, which) {
             if let Some(at) = self.pairs.get_mut(&pair) {

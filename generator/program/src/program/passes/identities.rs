@@ -1,8 +1,8 @@
 //! Replaces nodes that are identically 0, 1 or another simple number although their form does not show it:
 //! cos^2 + sin^2, or a term and its opposite in different forms.
 //!
-//! Nodes are evaluated modulo primes at arbitrary inputs ([`super::modular`]): one with the same simple
-//! number at all of them is that number.
+//! Nodes are evaluated modulo primes at random inputs ([`super::modular`]): a node that has the residue of
+//! the same simple number at all of them is replaced by that number.
 
 use std::collections::HashMap;
 
@@ -13,11 +13,11 @@ use crate::program::operation::Stage;
 use hodograph_model::graph::modular::Residues;
 use hodograph_model::number::Number;
 
-/// Numbers that are found are multiples of the reciprocal of this, up to [`LARGEST`].
+/// Numbers that can be found are multiples of the reciprocal of this, up to [`LARGEST`].
 const DENOMINATOR: u32 = 12;
-/// Larger multiples are left alone.
+/// The largest number that can be found.
 const LARGEST: u32 = 12_000;
-/// In longer sums no three terms are looked for that cancel.
+/// In longer sums triples of terms that cancel are not sought.
 const LONGEST: usize = 16;
 
 /// Replaces nodes that are identically a number, and drops terms that cancel.
@@ -45,13 +45,13 @@ pub fn replace(derived: &Derived) -> Derived {
     })
 }
 
-/// The simple number that a node is identically, if it is one.
+/// The simple number that a node is identically, if any.
 fn number_of(at: Residues) -> Option<Number> {
     let numerator = at.multiple_of(DENOMINATOR, LARGEST)?;
     Some(Number::ratio(numerator, i64::from(DENOMINATOR)))
 }
 
-/// The terms of a sum that are left when those are gone which cancel in twos and threes.
+/// The terms of a sum that remain after pairs and triples that cancel are removed.
 fn without_cancelled(terms: &[Option<Residues>]) -> Vec<usize> {
     let mut left: Vec<usize> = (0..terms.len()).collect();
     let mut open: HashMap<Residues, Vec<usize>> = HashMap::new();
@@ -68,7 +68,7 @@ fn without_cancelled(terms: &[Option<Residues>]) -> Vec<usize> {
     left
 }
 
-/// Three terms that cancel.
+/// Three terms whose sum is 0.
 fn three(terms: &[Option<Residues>], left: &[usize]) -> Option<[usize; 3]> {
     if left.len() > LONGEST {
         return None;
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_identically_a_number_becomes_it() {
+    fn nodes_that_are_identically_a_number_become_that_number() {
         let number = |n, d| NodeKind::Number(Number::ratio(n, d));
         let one = |graph: &mut Graph| {
             let [x, ..] = speeds(graph);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_looks_like_a_number_is_left() {
+    fn nodes_that_are_only_close_to_a_number_stay() {
         let nearly = |graph: &mut Graph| {
             let [x, y, ..] = speeds(graph);
             let tiny = graph.number(Number(num_rational::BigRational::from_float(1e-60).unwrap()));
@@ -174,7 +174,7 @@ mod tests {
             graph.sum([square, minus, small])
         };
         assert!(!matches!(replaced(nearly), NodeKind::Number(_)));
-        // 0 for every x below 10: a branch decides
+        // a node that is 0 for every x below 10: a branch decides
         let branch = |graph: &mut Graph| {
             let ([x, ..], ten) = (speeds(graph), graph.integer(-10));
             let shifted = graph.sum([x, ten]);

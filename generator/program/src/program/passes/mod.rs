@@ -1,7 +1,8 @@
-//! The passes that optimise a program, in one list. No pass changes what an output means: tests compare the
-//! interpreter's results before and after each.
+//! The passes that optimise a program, in one list. No pass changes the meaning of an output: tests compare
+//! the results of the interpreter before and after each.
 //!
-//! The first passes work on the graph of a derivation; one lowers it to operations; the others work on those.
+//! The first passes work on the graph of a derivation; one lowers the graph to operations; the last ones work
+//! on operations.
 
 mod adjoint;
 mod collect;
@@ -32,18 +33,18 @@ use super::straight_line::Program;
 /// A pass.
 #[derive(Clone, Copy)]
 pub struct Pass {
-    /// its name, as cost tables show it
+    /// its name in cost tables
     pub name: &'static str,
     work: Work,
 }
 
-/// What a pass works on.
+/// The function of a pass, by what it works on.
 #[derive(Clone, Copy)]
 enum Work {
     Graph(fn(&Derived) -> Derived),
     Lower(fn(&Derived) -> Program),
     Operations(fn(&Program) -> Program),
-    Weighed(fn(&Program, &[Inputs]) -> Program),
+    Sampled(fn(&Program, &[Inputs]) -> Program),
 }
 
 /// The passes in their order.
@@ -57,9 +58,9 @@ pub const PASSES: [Pass; 13] = [
     Pass { name: "lower", work: Work::Lower(lower) },
     Pass { name: "contract", work: Work::Operations(contract::contract) },
     Pass { name: "dead code", work: Work::Operations(dead_code::remove) },
-    Pass { name: "reassociate", work: Work::Weighed(reassociate::reassociate) },
+    Pass { name: "reassociate", work: Work::Sampled(reassociate::reassociate) },
     Pass { name: "vanishing", work: Work::Operations(vanishing::drop) },
-    Pass { name: "equal values", work: Work::Weighed(equal::share) },
+    Pass { name: "equal values", work: Work::Sampled(equal::share) },
     Pass { name: "dead code again", work: Work::Operations(dead_code::remove) },
 ];
 
@@ -74,7 +75,7 @@ impl Program {
     }
 }
 
-/// What the passes on the graph make of a derivation, for who wants to go on from there.
+/// The derivation after the passes on the graph.
 pub fn simplified(derived: &Derived) -> Derived {
     PASSES.iter().fold(derived.clone(), |derived, pass| match pass.work {
         Work::Graph(run) => run(&derived),
@@ -82,13 +83,13 @@ pub fn simplified(derived: &Derived) -> Derived {
     })
 }
 
-/// A derivation on its way through the passes.
+/// A derivation between two passes.
 enum Form {
     Graph(Derived),
     Operations(Program),
 }
 
-/// Sends a derivation through the passes, and shows what it is after each as a program.
+/// Sends a derivation through the passes, and calls `show` with the program after each.
 pub fn run(derived: &Derived, mut show: impl FnMut(&'static str, &dyn Fn() -> Program)) -> Program {
     let mut form = Form::Graph(derived.clone());
     for pass in PASSES {
@@ -96,10 +97,10 @@ pub fn run(derived: &Derived, mut show: impl FnMut(&'static str, &dyn Fn() -> Pr
             (Work::Graph(run), Form::Graph(derived)) => Form::Graph(run(&derived)),
             (Work::Lower(run), Form::Graph(derived)) => Form::Operations(run(&derived)),
             (Work::Operations(run), Form::Operations(program)) => Form::Operations(run(&program)),
-            (Work::Weighed(run), Form::Operations(program)) => {
+            (Work::Sampled(run), Form::Operations(program)) => {
                 Form::Operations(run(&program, &derived.samples))
             }
-            // The list has one pass that lowers, after those on the graph: a test holds it to that.
+            // The list has one lowering pass, after those on the graph; a test ensures this.
             (_, form) => form,
         };
         show(pass.name, &|| solved(form.program(), derived.solve.as_ref()));
@@ -134,13 +135,13 @@ mod tests {
         let order = PASSES.map(|pass| match pass.work {
             Work::Graph(_) => 0,
             Work::Lower(_) => 1,
-            Work::Operations(_) | Work::Weighed(_) => 2,
+            Work::Operations(_) | Work::Sampled(_) => 2,
         });
         assert!(order.is_sorted() && order.iter().filter(|&&kind| kind == 1).count() == 1, "{order:?}");
     }
 
     #[test]
-    fn what_is_shown_is_what_the_next_pass_gets() {
+    fn show_receives_the_input_of_the_next_pass() {
         let (derived, mut shown) = (random(7), Vec::new());
         let last = run(&derived, |name, program| shown.push((name, program())));
         assert!(shown.iter().map(|(name, _)| *name).eq(PASSES.iter().map(|pass| pass.name)));

@@ -1,4 +1,4 @@
-//! The operations of a program modulo a prime.
+//! Evaluates the operations of a program modulo a prime.
 
 use num_rational::BigRational;
 
@@ -11,10 +11,10 @@ use hodograph_model::graph::modular::{Evaluate, Residues};
 use hodograph_model::number::Number;
 
 impl Program {
-    /// What every operation is at arbitrary inputs, of a pair of sine and cosine the angle.
+    /// The residues of every operation at random inputs; of a sine-cosine pair those of its angle.
     ///
-    /// What rounding takes from a sum of angles is 0 in exact arithmetic; it and what it is computed from are
-    /// kept as unknowns.
+    /// The computed rounding error of a sum of angles is 0 in exact arithmetic; it and the operations that
+    /// compute it are kept as unknowns.
     pub(in crate::program::passes) fn residues(&self) -> Vec<Option<Residues>> {
         self.at_both()
     }
@@ -34,7 +34,7 @@ impl Evaluate for Program {
     }
 }
 
-/// The first operations of a program.
+/// The operations of a program that are evaluated so far.
 struct Operations<'a, const P: u64> {
     program: &'a Program,
     residues: Vec<Option<Residue<P>>>,
@@ -81,7 +81,7 @@ impl<const P: u64> Values<P> for Operations<'_, P> {
     fn parts(&self, value: usize) -> Option<Parts<P>> {
         let operation = self.program.operations[value];
         let times = |sign: i64, value: Value| (Number::integer(sign), value.index());
-        // a multiple by a constant
+        // a product with a constant factor
         let product = |a: Value, b: Value| {
             let by = |a: Value, b: Value| Some((self.constant(a)?, b.index()));
             by(a, b).or_else(|| by(b, a))
@@ -110,8 +110,8 @@ impl<const P: u64> Values<P> for Operations<'_, P> {
     }
 }
 
-/// Whether it belongs to the computation of what rounding takes from a sum t = a + b (Knuth's two-sum): the part
-/// of b in t, t - a, or what is left of a and of b, `a - (t - (t - a))` and `b - (t - a)`. Their operations are
+/// Whether it belongs to the computation of the rounding error of a sum t = a + b (Knuth's two-sum): the part
+/// of b in t, t - a, or the errors of a and of b, `a - (t - (t - a))` and `b - (t - a)`. These operations are
 /// not fused ([`super::contract`]).
 fn is_rounding(program: &Program, operation: Operation) -> bool {
     let (first, second) = match operation {

@@ -2,7 +2,7 @@
 
 use crate::program::derivation::Derived;
 
-/// Drops what nobody asks for.
+/// Removes guards that no output needs.
 pub fn prune(derived: &Derived) -> Derived {
     let wanted = derived.outputs.iter().flat_map(|output| output.values.iter().copied());
     let reachable = derived.graph.reachable(wanted);
@@ -32,7 +32,7 @@ mod tests {
     }
 
     #[test]
-    fn guards_of_what_is_computed_stay_and_others_go() {
+    fn guards_of_used_values_stay_and_others_go() {
         let pruned = prune(&guarded());
         let messages: Vec<_> = pruned.guards.iter().map(|guard| guard.message.as_str()).collect();
         assert_eq!(messages, ["needed"]);

@@ -1,37 +1,38 @@
 //! Adds the terms of a sum in the order with the least rounding error.
 //!
 //! The rounding error of a partial sum is proportional to its size. A sum that is used in one other sum only
-//! is merged into it. Of all orders of the terms that take the fewest operations, the one is chosen whose
-//! partial sums are smallest in the mean over the sample states, each state being weighted by the effect
-//! of an error on the outputs. Terms that cancel are thereby added early.
+//! is merged into it. Among the orders of the terms with the fewest operations the pass chooses the one whose
+//! partial sums are smallest in the mean over the sample states, each state weighted by the effect of an
+//! error on the outputs. Terms that cancel are thereby added early.
 
-use super::adjoint::Weighed;
+use super::adjoint::Sensitivity;
 use super::dead_code;
-use super::flat_sums::{Sum, Sums, Term, put_together};
+use super::flat_sums::{Sum, Sums, Term, rebuild};
 use crate::program::inputs::Inputs;
 use crate::program::operation::{Stage, Value};
 use crate::program::straight_line::Program;
 use hodograph_model::arithmetic::DoubleDouble;
 
-/// Up to this number of terms all orders are compared; of more, the order is chosen from the end, term by
+/// Up to this number of terms all orders are compared. For more terms the order is chosen backwards, term by
 /// term.
-const MOST: usize = 10;
-/// Beyond this number of terms the order stays: the work grows with their square.
-const MANY: usize = 1000;
-/// A sum that is at most this times its largest term at all states is what rounding leaves: its order is its
-/// meaning.
+const MAX_EXHAUSTIVE: usize = 10;
+/// Beyond this number of terms the order stays, since the work grows with the square of the number.
+const MAX_TERMS: usize = 1000;
+/// A sum that is at most this times its largest term at all states is a computed rounding error, whose order
+/// must not change.
 const ROUNDING: f64 = 1e-10;
-/// An order must cost less than this part of another to count as better: so the choice does not depend on the
-/// last digits of samples.
-const BETTER: f64 = 1.0 - 1e-6;
-/// The order in which terms stand is given up for one that costs less than this part of it; some dozen
-/// samples do not tell more.
-const WORTH: f64 = 0.9;
+/// An order counts as better if its cost is below this part of another's, so that the choice does not depend
+/// on the last digits of samples.
+const MARGIN: f64 = 1.0 - 1e-6;
+/// The given order of terms is replaced only if the cost of the best order is below this part of its cost; a
+/// few dozen samples do not justify finer decisions.
+const MIN_GAIN: f64 = 0.9;
 
-/// A swept program with the terms of its sums in the order that loses least at the sample states.
+/// The program with the terms of its sums in the order with the least estimated rounding error at the sample
+/// states.
 pub fn reassociate(program: &Program, states: &[Inputs]) -> Program {
-    let states: Vec<Weighed> =
-        (0..).zip(states).map(|(seed, state)| Weighed::new(program, state, seed)).collect();
+    let states: Vec<Sensitivity> =
+        (0..).zip(states).map(|(seed, state)| Sensitivity::new(program, state, seed)).collect();
     if states.is_empty() {
         return program.clone();
     }
@@ -48,12 +49,12 @@ pub fn reassociate(program: &Program, states: &[Inputs]) -> Program {
             plans[index] = Some(sum.in_order(index, &states));
         }
     }
-    dead_code::remove(&put_together(program, &plans))
+    dead_code::remove(&rebuild(program, &plans))
 }
 
 impl Sum {
-    /// Whether it vanishes beside its terms wherever it is a number.
-    fn is_rounding(&self, index: usize, states: &[Weighed]) -> bool {
+    /// Whether the sum is negligible beside its terms at every state where it is finite.
+    fn is_rounding(&self, index: usize, states: &[Sensitivity]) -> bool {
         states.iter().all(|state| {
             let largest =
                 self.terms.iter().fold(0.0f64, |largest, term| largest.max(term.number(state).abs()));
@@ -62,22 +63,23 @@ impl Sum {
         })
     }
 
-    /// Whether the sum may begin with this term. A product would take an operation of its own, unless all are
-    /// products.
+    /// Whether the sum may begin with this term. A product as first term would take an operation of its own,
+    /// unless all terms are products.
     fn begins(&self, term: usize) -> bool {
         !self.terms[term].is_product() || self.terms.iter().all(Term::is_product)
     }
 
-    /// The terms in the order that loses least.
-    fn in_order(self, index: usize, states: &[Weighed]) -> Vec<Term> {
-        let weigh = |state: &Weighed| {
+    /// The terms in the order with the least rounding error.
+    fn in_order(self, index: usize, states: &[Sensitivity]) -> Vec<Term> {
+        let weigh = |state: &Sensitivity| {
             let numbers: Vec<f64> = self.terms.iter().map(|term| term.number(state)).collect();
             let total: f64 = numbers.iter().map(|number| number * number).sum();
             let weight = state.weights[index];
             (weight > 0.0 && (weight * total).is_finite()).then_some((weight, numbers))
         };
         let samples: Vec<(f64, Vec<f64>)> = states.iter().filter_map(weigh).collect();
-        let places = if self.terms.len() <= MOST { self.best(&samples) } else { self.good(&samples) };
+        let places =
+            if self.terms.len() <= MAX_EXHAUSTIVE { self.best(&samples) } else { self.good(&samples) };
         places.into_iter().map(|place| self.terms[place].clone()).collect()
     }
 
@@ -94,19 +96,19 @@ impl Sum {
         costs
     }
 
-    /// Of all orders the best, by the best orders of all subsets.
+    /// The best of all orders, from the best orders of all subsets (dynamic programming).
     fn best(&self, samples: &[(f64, Vec<f64>)]) -> Vec<usize> {
         let costs = self.partial_sums(samples);
         let mut best = vec![(f64::INFINITY, 0); costs.len()];
         for set in 1..costs.len() {
-            // of equals as they are
+            // among equals the given order
             for last in (0..self.terms.len()).rev().filter(|last| set >> last & 1 == 1) {
                 let cost = match set ^ (1 << last) {
                     0 if self.begins(last) => self.first(last, &costs),
                     0 => f64::INFINITY,
                     rest => best[rest].0 + costs[set],
                 };
-                if cost < best[set].0 * BETTER || best[set].0 == f64::INFINITY {
+                if cost < best[set].0 * MARGIN || best[set].0 == f64::INFINITY {
                     best[set] = (cost, last);
                 }
             }
@@ -118,7 +120,7 @@ impl Sum {
             set |= 1 << place;
             cost += costs[set];
         }
-        if best[costs.len() - 1].0 >= WORTH * cost {
+        if best[costs.len() - 1].0 >= MIN_GAIN * cost {
             return present;
         }
         let (mut places, mut set) = (Vec::new(), costs.len() - 1);
@@ -130,27 +132,27 @@ impl Sum {
         places
     }
 
-    /// What the first term costs: only a product is rounded before anything is added to it.
+    /// The cost of the first term: only a product is rounded before another term is added.
     fn first(&self, term: usize, costs: &[f64]) -> f64 {
         if self.terms[term].is_product() { costs[1 << term] } else { 0.0 }
     }
 
-    /// The order in which the terms stand, but for one that can begin.
+    /// The given order of the terms, with the first admissible term moved to the front.
     fn present(&self) -> Vec<usize> {
         let first = (0..self.terms.len()).find(|&place| self.begins(place)).unwrap_or(0);
         let rest = (0..self.terms.len()).filter(|&place| place != first);
         std::iter::once(first).chain(rest).collect()
     }
 
-    /// From the end, the term without which the rest is smallest; as they stand where there are too many to
-    /// compare.
+    /// The order chosen backwards: last comes the term without which the partial sum is smallest. The given
+    /// order if there are too many terms.
     fn good(&self, samples: &[(f64, Vec<f64>)]) -> Vec<usize> {
-        if self.terms.len() > MANY {
+        if self.terms.len() > MAX_TERMS {
             return self.present();
         }
         let mut beginnings = (0..self.terms.len()).filter(|&term| self.begins(term)).count();
         let begins: Vec<bool> = (0..self.terms.len()).map(|term| self.begins(term)).collect();
-        // of twice the digits, so that terms can be taken away
+        // in double-double arithmetic, so that terms can be subtracted
         let sum = |numbers: &Vec<f64>| {
             numbers.iter().fold(DoubleDouble::new(0.0), |sum, &n| sum + DoubleDouble::new(n))
         };
@@ -168,7 +170,7 @@ impl Sum {
                     weight * without * without
                 };
                 let cost: f64 = samples.iter().zip(&sums).map(of_sample).sum();
-                if best.1.is_none() || cost < best.0 * BETTER {
+                if best.1.is_none() || cost < best.0 * MARGIN {
                     best = (cost, Some(place));
                 }
             }
@@ -194,7 +196,7 @@ mod tests {
     use crate::program::{Derived, Quantity};
     use hodograph_model::arithmetic::Function;
 
-    /// The program before the pass and after it, with these speeds as the only sample.
+    /// The program before and after the pass, with these speeds as the only sample.
     fn both(derived: &Derived, speeds: [f64; 4]) -> [Program; 2] {
         let before = dead_code::remove(&contract(&lower(derived)));
         let after = reassociate(&before, &[Inputs { speeds: speeds.to_vec(), ..inputs() }]);
@@ -207,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cancels_comes_first() {
+    fn terms_that_cancel_come_first() {
         let derived = small(|g| {
             let speeds = speeds(g);
             vec![g.sum(speeds)]
@@ -230,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_that_serve_one_sum_alone_are_opened() {
+    fn sums_used_in_one_sum_only_are_opened() {
         use crate::program::graph::Input::Speed;
         use crate::program::operation::Operation::{Add, Input, Mul, MulAdd};
         let [a, b, c, d] = [0, 1, 2, 3].map(Value);
@@ -247,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_takes_from_angles_is_not_added_in_another_order() {
+    fn rounding_errors_of_angles_keep_their_order() {
         let derived = small(|g| {
             let [a, b, c, _] = speeds(g);
             let angle = g.sum([a, b, c]);
@@ -261,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn long_sums_bring_together_what_cancels() {
+    fn long_sums_bring_together_terms_that_cancel() {
         let derived = small(|g| {
             let coordinates = [0, 1, 2].map(|index| g.input(crate::program::graph::Input::Coordinate(index)));
             let speeds = speeds(g);
@@ -278,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn nor_where_they_are_no_numbers_at_a_sample() {
+    fn nor_where_terms_are_not_finite_at_a_sample() {
         let derived = small(|g| {
             let [a, b, c, d] = speeds(g);
             let root = g.call(Function::Sqrt, vec![d]);

@@ -7,18 +7,18 @@ use crate::program::graph::{Graph, Node, NodeKind};
 use crate::program::operation::Stage;
 use crate::program::output::{Guard, Output};
 
-/// What passes look up about the nodes of a graph.
+/// Facts about the nodes of a graph that passes look up.
 pub struct Survey {
-    /// whether the node is needed.
+    /// whether an output or a guard needs the node
     pub reachable: Vec<bool>,
-    /// how many nodes and outputs refer to it
+    /// number of nodes and outputs that refer to it
     pub uses: Vec<u32>,
-    /// when it can be computed
+    /// the stage of the node
     pub stages: Vec<Stage>,
 }
 
 impl Survey {
-    /// Looks at a derivation.
+    /// Collects the facts about the nodes of a derivation.
     pub fn new(derived: &Derived) -> Self {
         let graph = &derived.graph;
         let reachable = graph.reachable(roots(derived));
@@ -38,7 +38,7 @@ impl Survey {
         Survey { reachable, uses, stages }
     }
 
-    /// When a node can be computed.
+    /// The stage of a node.
     pub fn stage(&self, node: Node) -> Stage {
         self.stages[node.0 as usize]
     }
@@ -49,7 +49,7 @@ impl Survey {
     }
 }
 
-/// When a node can be computed.
+/// The earliest stage at which a node can be computed.
 pub fn stage(value: &NodeKind, mut of: impl FnMut(Node) -> Stage) -> Stage {
     match value {
         NodeKind::Input(input) => Stage::of_input(*input),
@@ -57,13 +57,13 @@ pub fn stage(value: &NodeKind, mut of: impl FnMut(Node) -> Stage) -> Stage {
     }
 }
 
-/// All nodes that a derivation wants.
+/// The nodes of all outputs and guards.
 pub fn roots(derived: &Derived) -> impl Iterator<Item = Node> {
     let outputs = derived.outputs.iter().flat_map(|output| output.values.iter().copied());
     outputs.chain(derived.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten())
 }
 
-/// A new graph, node by node: `form` makes the new node of an old one, whose operands are new already.
+/// Builds a new graph, node by node: `form` makes the new node of an old one whose operands are new already.
 pub fn rewrite(
     derived: &Derived,
     survey: &Survey,
@@ -92,7 +92,7 @@ pub fn rewrite(
     Derived { graph, outputs, guards, structures, samples, apart: Vec::new(), solve: None }
 }
 
-/// New nodes for old.
+/// The new nodes of old ones.
 pub struct Renamed {
     nodes: HashMap<Node, Node>,
 }
@@ -100,7 +100,7 @@ pub struct Renamed {
 impl Renamed {
     /// The new node of an old one.
     pub fn of(&self, old: Node) -> Node {
-        // Operands come before their use, so they are there.
+        // Operands precede their use, so their new nodes exist.
         self.nodes.get(&old).copied().unwrap_or(old)
     }
 
@@ -110,7 +110,7 @@ impl Renamed {
     }
 }
 
-/// The new node of an old one that is made as it was, through the simplifying constructors.
+/// The new node of an old one with the same operation, built by the simplifying constructors.
 pub fn rebuild(graph: &mut Graph, value: &NodeKind, renamed: &Renamed) -> Node {
     match value {
         NodeKind::Number(number) => graph.number(number.clone()),

@@ -3,7 +3,7 @@
 use crate::program::graph::{Graph, Node, NodeKind};
 use hodograph_model::number::Number;
 
-/// A number times a node that is no number and has no number in front; `None`: the number alone.
+/// A node as a number times a node without a number in front; `None`: the node is the number alone.
 pub fn coefficient(graph: &mut Graph, node: Node) -> (Number, Option<Node>) {
     match graph.kind(node).clone() {
         NodeKind::Number(number) => (number, None),
@@ -18,7 +18,7 @@ pub fn coefficient(graph: &mut Graph, node: Node) -> (Number, Option<Node>) {
     }
 }
 
-/// The terms of a node: itself, if it is no sum.
+/// The terms of a node: the node itself if it is not a sum.
 pub fn terms(graph: &Graph, node: Node) -> Vec<Node> {
     match graph.kind(node) {
         NodeKind::Sum(terms) => terms.clone(),
@@ -37,7 +37,7 @@ pub fn factors(graph: &Graph, node: Node) -> (Number, Vec<Node>) {
     for factor in listed {
         match graph.kind(factor) {
             NodeKind::Number(coefficient) => number = Number(number.0 * &coefficient.0),
-            // A high power is better squared repeatedly.
+            // A high power is computed by repeated squaring.
             NodeKind::Power(base, exponent @ 2..=3) => {
                 factors.extend(std::iter::repeat_n(*base, *exponent as usize))
             }
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_come_apart_from_what_they_multiply() {
+    fn numbers_are_separated_from_the_other_factors() {
         let mut g = Graph::new();
         let [a, b, ..] = speeds(&mut g);
         let three = g.integer(3);

@@ -11,7 +11,7 @@ use crate::program::{Derived, Output, Quantity};
 use hodograph_model::arithmetic::Function;
 use hodograph_model::number::Number;
 
-/// A derivation of some nodes.
+/// A derivation with these nodes as its output.
 pub fn small(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Derived {
     let mut graph = Graph::new();
     let nodes = build(&mut graph);
@@ -27,17 +27,17 @@ pub fn small(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Derived {
     }
 }
 
-/// Four numbers that change from call to call.
+/// Four inputs of the velocity stage.
 pub fn speeds(graph: &mut Graph) -> [Node; 4] {
     [0, 1, 2, 3].map(|index| graph.input(Input::Speed(index)))
 }
 
-/// Three numbers that are known at construction.
+/// Three inputs that are known at construction.
 pub fn parameters(graph: &mut Graph) -> [Node; 3] {
     [0, 1, 2].map(|index| graph.input(Input::Parameter(index)))
 }
 
-/// A random derivation; the generator of random numbers is in the seed.
+/// A random derivation, determined by the seed.
 pub fn random(seed: u64) -> Derived {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut random = move |below: usize| {
@@ -75,7 +75,7 @@ pub fn random(seed: u64) -> Derived {
     }
 }
 
-/// Numbers for what random and small derivations read.
+/// Values for the inputs of random and small derivations.
 pub fn inputs() -> Inputs {
     Inputs {
         parameters: vec![1.3, 0.4, 2.2],
@@ -85,23 +85,23 @@ pub fn inputs() -> Inputs {
     }
 }
 
-/// What a program answers; `None` where that is no number.
+/// The results of a program; `None` if one is not finite.
 fn numbers(program: &Program) -> Option<Vec<f64>> {
     Some(Evaluator::new(program).evaluate(&inputs(), &[Quantity::Forcing]).ok()?.remove(0).values)
 }
 
-/// What a program answers, to the last bit.
+/// The bits of the results of a program.
 pub fn bits(program: &Program) -> Option<Vec<u64>> {
     Some(numbers(program)?.into_iter().map(f64::to_bits).collect())
 }
 
-/// Both programs give the same numbers but for rounding.
+/// Both programs give the same numbers up to rounding.
 pub fn agree(before: &Program, after: &Program, context: &str) {
     let Some(expected) = numbers(before) else { return };
     let found = numbers(after).unwrap_or_else(|| panic!("{context}: no number any more"));
     assert_eq!(expected.len(), found.len(), "{context}");
     for (expected, found) in expected.iter().zip(&found) {
-        // the reciprocal of what rounding left of zero
+        // the reciprocal of a rounding error of zero
         if expected.abs() > 1e14 && found.abs() > 1e14 {
             continue;
         }
@@ -110,7 +110,8 @@ pub fn agree(before: &Program, after: &Program, context: &str) {
     }
 }
 
-/// A pass on the graph keeps the meaning of random derivations, most of which have one.
+/// Checks that a pass on the graph keeps the meaning of random derivations, most of which have finite
+/// results.
 pub fn keeps_the_meaning(pass: fn(&Derived) -> Derived) {
     let mut compared = 0;
     for seed in 1..150 {
@@ -121,7 +122,7 @@ pub fn keeps_the_meaning(pass: fn(&Derived) -> Derived) {
     assert!(compared > 40, "{compared}");
 }
 
-/// The kinds of a program's operations in their order; numbers from outside and constants left out.
+/// The kinds of a program's operations in order, without inputs and constants.
 pub fn operations(program: &Program) -> Vec<String> {
     let kind = |operation: &Operation| match operation {
         Operation::Input(_) | Operation::Constant(_) => None,
@@ -130,7 +131,7 @@ pub fn operations(program: &Program) -> Vec<String> {
     program.operations.iter().filter_map(kind).collect()
 }
 
-/// Operations from call to call, without those at construction.
+/// The operations of an evaluation, without those at construction.
 pub fn late(derived: &Derived) -> Vec<String> {
     let program = lower(derived);
     let stages = program.stages();

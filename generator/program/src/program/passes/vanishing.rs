@@ -1,5 +1,5 @@
 //! Removes operations whose result is identically 0, 1 or -1, as partial sums may be after reassociation:
-//! terms that cancel, or the squares of a sine and a cosine.
+//! terms that cancel, or the sum of the squares of a sine and a cosine.
 //!
 //! Operations are evaluated modulo primes ([`super::modular`]). The computed rounding error of a sum of
 //! angles is 0 in exact arithmetic; it is kept.
@@ -8,7 +8,7 @@ use crate::program::build::Builder;
 use crate::program::operation::{Operation, Value};
 use crate::program::straight_line::Program;
 
-/// The program without what vanishes or is identically 1 or -1.
+/// The program without operations that are identically 0, 1 or -1.
 pub fn drop(program: &Program) -> Program {
     let residues = program.residues();
     let number = |value: Value| {
@@ -48,7 +48,7 @@ pub fn drop(program: &Program) -> Program {
     new
 }
 
-/// An operation on new operands, shorter where one of them is 0, 1 or -1.
+/// An operation on new operands, simplified if one of them is 0, 1 or -1.
 fn rebuilt(builder: &mut Builder, operation: Operation) -> Value {
     let is_zero = |builder: &Builder, value: Value| builder.number(value) == Some(0.0);
     let is_unit = |builder: &Builder, value: Value| builder.number(value).is_some_and(|x| x.abs() == 1.0);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn fused_operations_lose_what_vanishes() {
+    fn fused_operations_lose_operands_that_vanish() {
         let derived = small(|graph| {
             let [x, y, z, w] = speeds(graph);
             let (minus, sum, other) = (graph.integer(-1), graph.sum([x, y]), graph.product([w, z]));
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_only_very_small_stays() {
+    fn very_small_values_stay() {
         let derived = small(|graph| {
             let [x, y, ..] = speeds(graph);
             let tiny = graph.number(hodograph_model::number::Number(
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_identically_one_is_no_factor_any_more() {
+    fn factors_that_are_identically_one_are_dropped() {
         let derived = small(|graph| {
             let [x, y, z, w] = speeds(graph);
             let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![x]));
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_takes_from_angles_stays() {
+    fn rounding_errors_of_angles_stay() {
         let derived = small(|graph| {
             let [x, y, ..] = speeds(graph);
             let angle = graph.sum([x, y]);

@@ -1,41 +1,48 @@
-//! What the table of quantities says of each.
+//! The columns of the table of quantities.
 
-/// What is to be said of a quantity.
+/// The properties of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Description {
     /// its word in derivation files, cost tables, reports and JSON
     pub word: &'static str,
-    /// its method in generated modules; after it stands the name of the point, frame or contact
+    /// its method in generated modules, a prefix to the name of a point, frame or contact
     pub method: Option<&'static str>,
-    /// the documentation of the method; `{}` stands for the point, frame or contact. Empty: the method is
-    /// made of several quantities, or has documentation of its own
+    /// the documentation of the method; `{}` stands for the point, frame or contact. Empty: the method
+    /// returns several quantities, or has documentation elsewhere
     pub docs: &'static str,
-    /// what it is, over its equations
+    /// title of its equations
     pub title: &'static str,
     /// its symbol in equations
     pub symbol: &'static str,
-    /// its unit, or in which units its entries are; empty where they are those of coordinates or speeds
+    /// its unit, or the units of its entries; empty if they are those of coordinates or speeds
     pub unit: &'static str,
     /// rows and columns
     pub shape: [Extent; 2],
-    /// what rows and columns belong to
+    /// the basis of its rows and columns
     pub axes: [Axes; 2],
-    /// what the entries are
+    /// the meaning of its entries
     pub entries: Entries,
-    /// what it depends on, by definition
+    /// the inputs that it depends on, by definition
     pub takes: Takes,
     /// how the traits of all mechanisms offer it
     pub offer: Offer,
-    /// the slice into which the traits write it: its name and what it holds, for messages
+    /// the slice argument of the traits: its name, and its description in messages
     pub slice: (&'static str, &'static str),
     /// whether it is among the equations that a reader of the paper looks for
     pub usual: bool,
 }
 
+impl Description {
+    /// Whether the number of entries depends on the mechanism.
+    pub fn grows(&self) -> bool {
+        self.shape.iter().any(|extent| !matches!(extent, Extent::Count(_)))
+    }
+}
+
 /// How many rows or columns a quantity has in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// so many
+    /// a fixed number
     Count(usize),
     /// n: coordinates
     Coordinates,
@@ -57,10 +64,10 @@ pub enum Extent {
     Collision,
 }
 
-/// What rows or columns belong to.
+/// The basis of rows or columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// no axes
+    /// no basis
     None,
     /// N.x, N.y, N.z
     Space,
@@ -68,14 +75,14 @@ pub enum Axes {
     Contact,
 }
 
-/// What the entries of a quantity are.
+/// The meaning of the entries of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entries {
-    /// a number
+    /// a single number
     Scalar,
     /// numbers by rows and columns
     Numbers,
-    /// the six of a symmetric 3 x 3 matrix: nn, nt, ns, tt, ts, ss
+    /// the six entries of a symmetric 3 x 3 matrix: nn, nt, ns, tt, ts, ss
     Symmetric,
     /// one per coordinate: its rate
     RatesOfCoordinates,
@@ -87,11 +94,11 @@ pub enum Entries {
     RatesOfDependentSpeeds,
     /// in the first column the value, in the others its derivatives
     ValueAndDerivatives,
-    /// lists one after the other
+    /// several lists, one after the other
     Lists,
 }
 
-/// What a quantity depends on by definition, besides parameters, coordinates and time.
+/// The inputs on which a quantity depends by definition, besides parameters, coordinates and time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Takes {
     /// independent speeds
@@ -100,7 +107,7 @@ pub struct Takes {
     pub loads: bool,
     /// given rates of the independent speeds
     pub accelerations: bool,
-    /// a direction
+    /// the direction of a linearisation
     pub tangent: bool,
 }
 
@@ -109,15 +116,15 @@ pub struct Takes {
 pub enum Offer {
     /// by a method that writes it into a slice
     Written,
-    /// by a method that answers it, or that answers it with others
+    /// by a method that returns it, alone or with others
     Answered,
-    /// by `Mechanism::quantity`, under its name
+    /// by `Mechanism::quantity`, by its name
     Named,
-    /// not: generated modules alone have it
+    /// only generated modules have it
     No,
 }
 
-/// A row in which nothing is said.
+/// A row with empty entries, as a base for others.
 pub const PLAIN: Description = Description {
     word: "",
     method: None,

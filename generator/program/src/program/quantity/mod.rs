@@ -1,4 +1,4 @@
-//! The quantities that a program can compute. What else is to be said of each stands in [`table`].
+//! The quantities that a program can compute. Their properties are in [`table`].
 
 mod description;
 pub mod table;
@@ -34,11 +34,12 @@ pub enum Quantity {
     /// derivative of the rates of the independent coordinates and of the accelerations along a direction
     /// (inputs `Tangent`): a column of the linearised equations (number of independent coordinates + p)
     StateTangent,
-    /// u' and its derivatives by independent coordinates, independent speeds and named inputs: p rows;
-    /// columns: the value, then one per coordinate, speed and input. Dependent coordinates and speeds
-    /// follow; parameters and time are held
+    /// u' and its derivatives with respect to independent coordinates, independent speeds and named inputs: p
+    /// rows; columns: the value, then one per coordinate, speed and input. Dependent coordinates and speeds
+    /// follow the independent ones; parameters and time are constant
     AccelerationsDerivatives,
-    /// inverse dynamics and its derivatives, likewise, for given u' (inputs `Acceleration`), which is held
+    /// inverse dynamics and its derivatives, likewise, for given u' (inputs `Acceleration`), which is
+    /// constant
     InverseDynamicsDerivatives,
     /// derivatives of the rates of the independent coordinates (rows); columns: one per independent
     /// coordinate, independent speed and named input
@@ -51,9 +52,10 @@ pub enum Quantity {
     ConfigurationResidual,
     /// its derivatives with respect to the dependent coordinates (c x c)
     ConfigurationJacobian,
-    /// residual of the velocity constraints with dependent speeds inserted (d), zero up to rounding
+    /// residual of the velocity constraints after substitution of the dependent speeds (d), zero up to
+    /// rounding
     ConstraintResidual,
-    /// momentum of all bodies (3), along N.x, N.y, N.z, as all that follow
+    /// momentum of all bodies (3), along N.x, N.y, N.z, as are the next four
     Momentum,
     /// angular momentum of all bodies about O (3)
     AngularMomentum,
@@ -99,21 +101,21 @@ pub enum ContactQuantity {
     DependentResponse,
     /// gap (1), only where the model gives one
     Gap,
-    /// how far the place of contact is within the features that touch (1), only where these end
+    /// how far the contact point is inside the features that touch (1), only if these are bounded
     Validity,
     /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
     PrescribedWork,
-    /// angular velocity of what strikes relative to what is struck (3) in the contact basis, only where the
-    /// surface has friction of rotation; so those that follow
+    /// angular velocity of the striking body relative to the struck one (3) in the contact basis; this and
+    /// the next three only if the surface has rolling or pivoting friction
     AngularVelocity,
     /// its partial velocities: rows: contact basis, columns: independent speeds (3 x p)
     PartialAngularVelocities,
-    /// its derivative (3) along (1, q', u'): its rates without contact forces
+    /// derivative of the relative angular velocity (3) along (1, q', u'): its rates without contact forces
     FreeAngularAcceleration,
     /// change of the independent speeds per unit angular impulse along the contact basis (p x 3)
     AngularResponse,
-    /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is
-    /// one) along a direction (inputs `Tangent`), where none of them depends on time by itself
+    /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, if the contact
+    /// has one) along a direction (inputs `Tangent`), if none of them depends on time explicitly
     Tangent,
     /// the same quantities (rows) with their derivatives; columns: the value, then one per independent
     /// coordinate, independent speed and named input
@@ -134,12 +136,12 @@ pub enum PointQuantity {
     Acceleration,
 }
 
-/// The structure of a reduced matrix that its symbols show.
+/// The structure of a reduced matrix that its symbols show: which entries vanish or are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Structure {
-    /// none
+    /// no structure
     General,
-    /// n1 may be anything; n2 = 12 = 0 and no velocity along `second`: planar
+    /// n2 = 12 = 0 and no velocity along `second`; n1 arbitrary: planar
     Planar,
     /// n1 = n2 = 0
     Balanced,
@@ -149,7 +151,7 @@ pub enum Structure {
     Isotropic,
 }
 
-/// Structures of a reduced matrix.
+/// The words of structures in derivation files.
 const STRUCTURE: [(Structure, &str); 5] = [
     (Structure::General, "general"),
     (Structure::Planar, "planar"),
@@ -179,7 +181,7 @@ impl fmt::Display for Quantity {
 }
 
 impl Quantity {
-    /// What is to be said of it.
+    /// The properties of the quantity.
     pub fn description(self) -> &'static Description {
         let row = match self {
             Quantity::Contact(_, quantity) => table::find(table::CONTACT, quantity),
@@ -187,11 +189,11 @@ impl Quantity {
             Quantity::Orientation(_) => Some(&table::ORIENTATION),
             whole => table::find(table::WHOLE, whole),
         };
-        // The tests find a row for every quantity.
+        // A test ensures that every quantity has a row.
         row.unwrap_or(&description::PLAIN)
     }
 
-    /// The name of the method that computes it in the module of a mechanism, where there is one.
+    /// The name of the method that computes it in the module of a mechanism, if there is one.
     pub fn method(self, mechanism: &Mechanism) -> Option<String> {
         let prefix = self.description().method?;
         let of = match self {
@@ -203,13 +205,13 @@ impl Quantity {
         Some(format!("{prefix}_{}", snake_case(of)))
     }
 
-    /// Whether it is a matrix whose columns solve systems of equations. Few values are alive while its
-    /// entries are computed column by column.
+    /// Whether it is a matrix whose columns solve systems of equations. Few values are live if its entries
+    /// are computed column by column.
     pub fn is_solved_by_columns(self) -> bool {
         matches!(self, Quantity::AccelerationsDerivatives)
     }
 
-    /// The quantity that these words mean, as `Display` writes them.
+    /// The quantity with these words, as `Display` writes them.
     pub fn from_words(words: &[&str]) -> Option<Self> {
         match *words {
             [word] => table::key(table::WHOLE, word),
@@ -224,7 +226,7 @@ impl Quantity {
         }
     }
 
-    /// The quantities of the whole mechanism that are offered by name, in the order of their numbers.
+    /// The quantities of the whole mechanism that are offered by name, in the order of their indices.
     pub fn named() -> impl Iterator<Item = Quantity> {
         table::WHOLE.iter().filter(|(_, row)| row.offer == Offer::Named).map(|(quantity, _)| *quantity)
     }
@@ -237,7 +239,7 @@ impl fmt::Display for Structure {
 }
 
 impl Structure {
-    /// The structure that this word means.
+    /// The structure with this word.
     pub fn from_word(word: &str) -> Option<Self> {
         key(&STRUCTURE, word)
     }
@@ -261,7 +263,7 @@ mod tests {
         }
     }
 
-    /// Every variant has one row: the enums count up, and a row that is missing leaves a gap.
+    /// Every variant has one row: the variants count up, so that a missing row leaves a gap.
     #[test]
     fn every_quantity_has_one_row() {
         fn complete<K: Copy + Ord + fmt::Debug>(rows: &[(K, Description)], last: K, count: usize) {
@@ -277,7 +279,7 @@ mod tests {
         complete(table::POINT, PointQuantity::Acceleration, PointQuantity::Acceleration as usize + 1);
     }
 
-    /// What is written for readers is there for every quantity, and what is offered by name has a unit.
+    /// Every text for readers is present for every quantity, and quantities offered by name have a unit.
     #[test]
     fn every_row_is_filled_in() {
         let rows = table::WHOLE.iter().map(|(_, row)| row);

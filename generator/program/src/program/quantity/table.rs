@@ -1,7 +1,7 @@
-//! The table of quantities: what stands here of each is said nowhere else. From it are made the words of
-//! derivation files and the shapes that they may have, headings of equations, methods of generated modules
-//! with their arguments and documentation, routines of the interpreter, the quantities that the traits and the
-//! bindings offer by name, and the reports of the tool.
+//! The table of quantities, the only place that states their properties. It determines the words and shapes
+//! in derivation files, the headings of equations, the methods of generated modules with their arguments and
+//! documentation, the routines of the interpreter, the quantities that the traits and the bindings offer by
+//! name, and the reports of the tool.
 //!
 //! A new quantity needs a variant of its enum, a row here, and its derivation (`generator/derive/src/kane`).
 

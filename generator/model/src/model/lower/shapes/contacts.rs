@@ -1,11 +1,12 @@
 //! Lowers contacts between shapes to contacts of points with normals and gaps.
 
 use super::super::super::mechanism::{
-    Against, Anchor, BodyId, Contact, FrameId, PointId, Scalar, Shape, ShapeId, Vector,
+    Against, Anchor, BodyId, Contact, FrameId, Kind, PointId, Scalar, Shape, ShapeId, Vector,
 };
 use super::super::super::names::Symbol;
 use super::super::super::pairs::{self, Pair};
 use super::super::Lowering;
+use super::boxes;
 use super::closed_forms::touches;
 use super::features::Touch;
 use crate::diagnostics::{Diagnostic, codes};
@@ -62,6 +63,7 @@ impl Lowering<'_> {
                 // nothing is to be said of a gap where a pair could not be read
                 without_gap: ids.is_none(),
                 validity: parts.validity,
+                tangent: parts.tangent,
                 gap_span: pair.field.value.span.to(struck),
                 surface,
                 law: law.clone(),
@@ -111,7 +113,12 @@ impl Lowering<'_> {
             self.report(error.help("state its position"));
             return None;
         }
-        Some(([a, b], touches(striking, pair.inside(), struck, span)))
+        let both_are_boxes = [striking, struck].iter().all(|shape| shape.kind == Kind::Box);
+        let touches = match both_are_boxes && !pair.inside() {
+            true => boxes::between(striking, struck, &mut self.out.definitions, record.name.span),
+            false => touches(striking, pair.inside(), struck, span),
+        };
+        Some(([a, b], touches))
     }
 
     /// A pair between which no contact is compiled.
@@ -176,7 +183,7 @@ impl Lowering<'_> {
             }
         };
         let (normal, gap, validity) = (touch.normal, Some(touch.gap), touch.validity);
-        Parts { point, body: striking.body, against, normal, gap, validity }
+        Parts { point, body: striking.body, against, normal, gap, validity, tangent: touch.tangent }
     }
 }
 
@@ -188,12 +195,13 @@ struct Parts {
     normal: Vector,
     gap: Option<Scalar>,
     validity: Option<Scalar>,
+    tangent: Option<Vector>,
 }
 
 impl Parts {
     /// Those of a pair that could not be read.
     fn none() -> Self {
         let (against, normal) = (Against::Fixed, Vector::Zero);
-        Parts { point: PointId::O, body: None, against, normal, gap: None, validity: None }
+        Parts { point: PointId::O, body: None, against, normal, gap: None, validity: None, tangent: None }
     }
 }

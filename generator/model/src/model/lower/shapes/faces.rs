@@ -17,15 +17,25 @@ const WITHIN: (i64, i64) = (-1, 1_000_000_000);
 /// not touch from above.
 const OVERLAP: (i64, i64) = (8, 1_000_000_000);
 
+/// Bodies overlap that are apart, along every axis that might separate them, by less than minus this share of their
+/// extent.
+pub const OVERLAPS: (i64, i64) = (4, 1_000_000);
+/// How much steeper than a distance the bound is that tells it.
+const STEEP: i64 = 10_000_000;
+
 /// The contacts: the vertices of the first with the second, then those of the second with the first.
 pub fn between(first: &Shape, second: &Shape) -> Vec<Touch> {
     let (own, other) = (Face::of(second, first), Face::of(first, second));
-    let strikes = corners(first).into_iter().map(|vertex| own.under(vertex, REACH));
+    let along = own.apart.iter().chain(&other.apart).cloned().reduce(greater);
+    let extent = [first, second].into_iter().flat_map(|shape| &shape.sizes).cloned().collect();
+    let overlap = product([ratio(OVERLAPS.0, OVERLAPS.1), Scalar::Add(extent)]);
+    let distance = sum([along.unwrap_or_else(|| integer(0)), overlap]);
+    let strikes = corners(first).into_iter().map(|vertex| own.under(vertex, REACH, &distance));
     let struck = corners(second).into_iter().map(|vertex| {
         // the matter of the first shape that is at the vertex of the second
         let origin = Anchor { point: first.at.point, by: Vector::Zero };
         let there = Anchor { by: vertex.from(&origin), ..origin };
-        let touch = other.under(vertex, WITHIN);
+        let touch = other.under(vertex, WITHIN, &distance);
         Touch { point: there, normal: opposite(&touch.normal), ..touch }
     });
     strikes.chain(struck).collect()
@@ -62,8 +72,9 @@ impl<'s> Face<'s> {
         Face { shape, axes, across, sides, apart }
     }
 
-    /// The contact of a vertex of the other body; by `reach` times the length of a side it may be beyond its end.
-    fn under(&self, vertex: Anchor, reach: (i64, i64)) -> Touch {
+    /// The contact of a vertex of the other body; by `reach` times the length of a side it may be beyond its end. The
+    /// bodies overlap where `distance` is negative.
+    fn under(&self, vertex: Anchor, reach: (i64, i64), distance: &Scalar) -> Touch {
         let from = vertex.from(&self.shape.at);
         let share = |(n, d): (i64, i64), length: &Scalar| product([ratio(n, d), length.clone()]);
         let (mut gaps, mut bounds, mut normals) = (Vec::new(), Vec::new(), Vec::new());
@@ -76,27 +87,28 @@ impl<'s> Face<'s> {
             let within = less(share(reach, length), beyond.clone());
             let over = less(opposite_of(self.apart[i].clone()), share(OVERLAP, length));
             let above = product([across.clone(), side.clone(), place]);
-            bounds.push(sum([product([along.clone(), lesser(within, over)]), above]));
-            gaps.push(product([across.clone(), beyond]));
+            bounds.push(sum([product([along.clone(), lesser(within, over)]), above.clone()]));
+            gaps.push(less(above, product([across.clone(), half(length)])));
             normals.push(scaled(product([across.clone(), side.clone()]), e));
         }
-        closed_within(vertex, total(normals), Scalar::Add(gaps), bounds)
+        let validity = bounds.into_iter().reduce(lesser).unwrap_or_else(|| integer(1));
+        let gap = gap_of(Scalar::Add(gaps), opposite_of(validity.clone()), distance.clone());
+        Touch { point: vertex, normal: total(normals), gap, validity: Some(validity), tangent: None }
     }
 }
 
-/// A contact that is one where all of these bounds are positive; elsewhere its gap is how far it is from that.
-fn closed_within(point: Anchor, normal: Vector, height: Scalar, bounds: Vec<Scalar>) -> Touch {
-    let validity = bounds.into_iter().reduce(lesser).unwrap_or_else(|| integer(1));
-    let gap = greater(height, opposite_of(validity.clone()));
-    Touch { point, normal, gap, validity: Some(validity) }
+/// The gap of a contact: its height where it is one, elsewhere how far it is from that. Of bodies that overlap
+/// (`distance` < 0) it is the height everywhere: of some contact it is negative.
+pub(super) fn gap_of(height: Scalar, invalidity: Scalar, distance: Scalar) -> Scalar {
+    greater(height, lesser(invalidity, product([integer(STEEP), distance])))
 }
 
-fn opposite_of(a: Scalar) -> Scalar {
+pub(super) fn opposite_of(a: Scalar) -> Scalar {
     Scalar::Neg(Box::new(a))
 }
 
 /// 1 for the greatest of some numbers, the first of equal ones, and 0 for the others.
-fn greatest(values: &[Scalar]) -> Vec<Scalar> {
+pub(super) fn greatest(values: &[Scalar]) -> Vec<Scalar> {
     let mut out: Vec<Scalar> = Vec::new();
     for (i, value) in values.iter().enumerate() {
         // none before it was the greatest, and none behind it is greater

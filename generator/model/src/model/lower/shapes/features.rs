@@ -13,12 +13,14 @@ pub struct Touch {
     pub gap: Scalar,
     /// how far the place is within the features that touch, where these end
     pub validity: Option<Scalar>,
+    /// a unit vector across the normal: the first of the two tangents, where the shapes have one to give
+    pub tangent: Option<Vector>,
 }
 
 impl Touch {
     /// One between features that do not end.
     pub fn endless(point: Anchor, normal: Vector, gap: Scalar) -> Touch {
-        Touch { point, normal, gap, validity: None }
+        Touch { point, normal, gap, validity: None, tangent: None }
     }
 }
 

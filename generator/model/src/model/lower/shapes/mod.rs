@@ -2,6 +2,7 @@
 
 mod algebra;
 mod bodies;
+mod boxes;
 mod closed_forms;
 mod colours;
 mod contacts;
