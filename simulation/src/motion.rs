@@ -146,11 +146,21 @@ impl Motion<'_> {
             None => Hold::Stick,
             // The direction follows from the state.
             Some(began) if closed.turning.is_some() => Hold::Slide(began),
-            Some(began) => {
-                let size = |speeds: &[f64]| support.velocity_size(i, speeds);
-                Hold::Slide(direction(support.slip(i), began, || size(speeds), || size(self.scale)))
-            }
+            Some(began) => Hold::Slide(self.direction(support, i, (support.slip(i), began), speeds)),
         }));
+    }
+
+    /// The direction of this slip of a contact, which began along `began`, at these speeds; `support` is the contact
+    /// here or nearby.
+    pub fn direction(
+        &self,
+        support: &ClosedContacts,
+        i: usize,
+        (slip, began): (Vector2<f64>, Vector2<f64>),
+        speeds: &[f64],
+    ) -> Vector2<f64> {
+        let size = |speeds: &[f64]| support.velocity_size(i, speeds);
+        direction(slip, began, || size(speeds), || size(self.scale))
     }
 
     /// The coefficients of friction in these modes at these velocities.

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use crate::event_functions::Watched;
 use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
-use crate::motion::{DIRECTION, Evaluation, Failure};
+use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Phase, Turned, Turning, mus};
 use crate::settled_slip::settled;
 use crate::signed_slip::{self, EXPLICIT, Search, SettledSlip, inconsistent};
@@ -416,16 +416,16 @@ impl Transition<'_> {
         let inputs = motion.inputs(step.t + step.h, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &inputs };
         for (place, (contact, hold)) in closed.iter().zip(&here.holds).enumerate() {
-            if let (Hold::Slide(d), true, None) = (hold, contact.rubs(), &contact.turning) {
+            if let (Hold::Slide(d), true, None, Some(began)) =
+                (hold, contact.rubs(), &contact.turning, contact.slides)
+            {
                 let velocity = self
                     .mechanism
                     .contact_velocity(contact.contact, &state)
                     .map_err(|error| self.failure(Failure::State(error)))?;
                 let slip = Vector2::new(velocity.y, velocity.z);
-                if slip.norm() <= DIRECTION * here.support.velocity_size(place, u) {
-                    continue;
-                }
-                if slip.dot(d) < 0.5 * slip.norm() && step.h > 2.0 * ENDING * self.front.scales.time {
+                let there = motion.direction(&here.support, place, (slip, began), u);
+                if there.dot(d) < 0.5 && step.h > 2.0 * ENDING * self.front.scales.time {
                     return Ok(false);
                 }
             }

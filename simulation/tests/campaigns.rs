@@ -7,7 +7,6 @@
 //! `HODOGRAPH_DROPS=81..82` tries one start alone, and a name after `campaigns::` one family.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::time::Instant;
 
 use crate::many::{Ended, Start, follow, model, name, surface, with_parameters};
@@ -48,16 +47,17 @@ impl Family {
 const LONG: f64 = if cfg!(debug_assertions) { 0.4 } else { 2.0 };
 
 /// The starts: the usual ones, or what `HODOGRAPH_DROPS` says, a number of them or a range.
-fn drops(usual: Range<u64>) -> Range<u64> {
+fn drops(usual: impl IntoIterator<Item = u64>) -> Vec<u64> {
     let text = std::env::var("HODOGRAPH_DROPS").unwrap_or_default();
-    match text.split_once("..") {
-        Some((from, to)) => from.parse().unwrap_or(usual.start)..to.parse().unwrap_or(usual.end),
-        None => text.parse().map_or(usual, |count| 0..count),
+    let (from, to) = text.split_once("..").unwrap_or(("0", &text));
+    match (from.parse::<u64>(), to.parse::<u64>()) {
+        (Ok(from), Ok(to)) => (from..to).collect(),
+        _ => usual.into_iter().collect(),
     }
 }
 
 /// Runs a family and tells its outcomes.
-fn campaign(family: &Family, usual: Range<u64>) {
+fn campaign(family: &Family, usual: impl IntoIterator<Item = u64>) {
     let mechanism = model(family.model);
     let others: Vec<_> = family.parameters.iter().map(|set| changed(&mechanism, set)).collect();
     let seeds = drops(usual);
@@ -65,7 +65,7 @@ fn campaign(family: &Family, usual: Range<u64>) {
     let mut outcomes: BTreeMap<&'static str, usize> = BTreeMap::new();
     let (mut events, mut account, mut slowest) = (0, 0.0_f64, (0.0_f64, 0));
     let mut failures = Vec::new();
-    for seed in seeds.clone() {
+    for &seed in &seeds {
         let one = Instant::now();
         let (end, tolerance, what) = drop_one(family, &mechanism, &others, seed);
         let took = one.elapsed().as_secs_f64();
@@ -97,7 +97,7 @@ fn campaign(family: &Family, usual: Range<u64>) {
     println!(
         "{}: {} drops, {outcomes:?}, {events} events, account {account:.1e}, {:.1} s, slowest {:.2} s ({})",
         family.model,
-        seeds.end - seeds.start,
+        seeds.len(),
         begin.elapsed().as_secs_f64(),
         slowest.0,
         slowest.1
@@ -216,8 +216,9 @@ fn chains_of_five() {
         }
         speeds(m, start, random, 0.5, 4.0);
     };
-    // In the last one slip begins, and its rate changes its sign before it is as large as errors of a step.
-    campaign(&Family::new("chain5", 2.0, [1.0, 0.5], throw), 4..7);
+    // In 6 slip begins, and its rate changes its sign before it is as large as errors of a step. In 149 slip begins
+    // against what rounding has left of the slip before, and hardly grows.
+    campaign(&Family::new("chain5", 2.0, [1.0, 0.5], throw), (4..7).chain([149]));
 }
 
 #[test]

@@ -29,9 +29,7 @@ const CORE: usize = 3 + 3 + 3 + 3 + 6;
 impl InterpretedMechanism {
     /// How many numbers the program has for a quantity of a contact.
     pub(crate) fn size(&self, contact: usize, quantity: ContactQuantity) -> usize {
-        self.program
-            .output(Quantity::Contact(contact as u32, quantity))
-            .map_or(0, |output| output.values.len())
+        self.sizes.get(&Quantity::Contact(contact as u32, quantity)).copied().unwrap_or(0)
     }
 
     /// A length that not all contacts have.

@@ -1,5 +1,6 @@
 //! [`InterpretedMechanism`]: a model with its program and parameters.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,7 +8,7 @@ use hodograph::generated::check_length;
 use hodograph::{ParameterError, State, StateError};
 use hodograph_model::model::mechanism::{self, Mechanism};
 use hodograph_program::interpret::{Arguments, Constants, Failed};
-use hodograph_program::program::Program;
+use hodograph_program::program::{Program, Quantity};
 use hodograph_program::{artifact, program};
 
 use crate::intern::intern;
@@ -23,6 +24,8 @@ use crate::{Error, description, motion, parameters, read};
 pub struct InterpretedMechanism {
     pub(crate) model: Arc<Mechanism>,
     pub(crate) program: Arc<Program>,
+    /// how many numbers the program has for each quantity
+    pub(crate) sizes: Arc<BTreeMap<Quantity, usize>>,
     /// all, in file order, `fixed` ones too
     parameters: Vec<f64>,
     pub(crate) constants: Constants,
@@ -67,6 +70,9 @@ impl InterpretedMechanism {
             quaternions: description::quaternions(&model),
             dependent_coordinates: description::dependent_coordinates(&model),
             model: Arc::new(model),
+            sizes: Arc::new(
+                program.outputs.iter().map(|output| (output.quantity, output.values.len())).collect(),
+            ),
             program: Arc::new(program),
             parameters,
             constants,

@@ -6,6 +6,7 @@
 pub mod columns;
 mod directional;
 mod prepared;
+mod schedule;
 
 use std::collections::BTreeSet;
 use std::fmt;

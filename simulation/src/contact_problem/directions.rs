@@ -7,6 +7,8 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
+use std::sync::LazyLock;
+
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{
@@ -36,6 +38,47 @@ pub(super) fn directions(problem: &Problem<'_>, chosen: &[Choice], open: &[usize
 fn direction(angle: f64) -> Vector2<f64> {
     let exact = |part: f64| if part.abs() <= 4.0 * f64::EPSILON { 0.0 } else { part };
     Vector2::new(exact(angle.cos()), exact(angle.sin()))
+}
+
+fn unit(angle: f64) -> Vector2<f64> {
+    Vector2::new(angle.cos(), angle.sin())
+}
+
+/// The directions at which the function of one contact is sampled: number, the first angle in steps, and the step.
+const SAMPLES: usize = 256;
+const FIRST: f64 = 0.37;
+const STEP: f64 = std::f64::consts::TAU / SAMPLES as f64;
+static CIRCLE: LazyLock<[Vector2<f64>; SAMPLES]> =
+    LazyLock::new(|| std::array::from_fn(|i| direction((i as f64 + FIRST) * STEP)));
+
+/// The points of a grid of directions of several contacts.
+struct Grid {
+    side: usize,
+    size: usize,
+    /// between neighbours along each axis
+    strides: [usize; MOST],
+}
+
+impl Grid {
+    fn new(contacts: usize) -> Self {
+        let side: usize = [1, 32, 12, 8, 6][contacts.min(MOST)];
+        Self { side, size: side.pow(contacts as u32), strides: std::array::from_fn(|j| side.pow(j as u32)) }
+    }
+
+    /// Where a point lies along an axis.
+    fn place(&self, number: usize, axis: usize) -> usize {
+        number / self.strides[axis] % self.side
+    }
+
+    fn angle(&self, place: usize, axis: usize) -> f64 {
+        place as f64 * std::f64::consts::TAU / self.side as f64 + 0.31 * (axis + 1) as f64
+    }
+
+    /// The point so many steps further around an axis.
+    fn beside(&self, number: usize, axis: usize, steps: usize) -> usize {
+        let place = self.place(number, axis);
+        number + ((place + steps) % self.side) * self.strides[axis] - place * self.strides[axis]
+    }
 }
 
 /// The problem of the contacts that begin to slip.
@@ -110,29 +153,30 @@ impl Reduced {
     /// For one contact: f times the perpendicular component is a trigonometric polynomial of degree two.
     fn of_one(&self) -> Vec<Vec<f64>> {
         let (w, beta, mu) = (&self.w, &self.beta, self.mu[0]);
-        let across = |angle: f64| {
-            let d = direction(angle);
-            let f = w[0][0] - mu * (w[0][1] * d.x + w[0][2] * d.y);
-            let push = |row: usize| w[row][0] - mu * (w[row][1] * d.x + w[row][2] * d.y);
-            let (t, s) = (f * beta[1] - beta[0] * push(1), f * beta[2] - beta[0] * push(2));
-            d.x * s - d.y * t
+        // f times an acceleration along the surface: a constant, and factors of the components of d.
+        let along = |row: usize| {
+            let part = |column: usize| w[0][column] * beta[row] - beta[0] * w[row][column];
+            [part(0), -mu * part(1), -mu * part(2)]
         };
-        let step = std::f64::consts::TAU / SAMPLES as f64;
-        let angles: Vec<f64> = (0..SAMPLES).map(|i| (i as f64 + 0.37) * step).collect();
-        let values: Vec<f64> = angles.iter().map(|&angle| across(angle)).collect();
+        let (t, s) = (along(1), along(2));
+        let of = |[c, x, y]: [f64; 3], d: &Vector2<f64>| c + x * d.x + y * d.y;
+        let across = |d: &Vector2<f64>| d.x * of(s, d) - d.y * of(t, d);
+        let at = |angle: f64| across(&direction(angle));
+        let values: Vec<f64> = CIRCLE.iter().map(across).collect();
+        let angle = |i: usize| (i as f64 + FIRST) * STEP;
         let mut roots = Vec::new();
         for i in 0..SAMPLES {
             let (left, here, right) =
                 (values[(i + SAMPLES - 1) % SAMPLES], values[i], values[(i + 1) % SAMPLES]);
             if (here > 0.0) != (right > 0.0) {
-                roots.push(vec![zero(&across, angles[i], angles[i] + step)]);
+                roots.push(vec![zero(&at, angle(i), angle(i) + STEP)]);
             } else if here.abs() < left.abs() && here.abs() <= right.abs() && (here > 0.0) == (left > 0.0) {
                 // Two zeros may lie between samples, on both sides of an extremum.
                 let curved = left - 2.0 * here + right;
-                let top = angles[i] + 0.5 * step * (left - right) / curved;
-                if curved != 0.0 && (across(top) > 0.0) != (here > 0.0) {
-                    roots.push(vec![zero(&across, angles[i] - step, top)]);
-                    roots.push(vec![zero(&across, top, angles[i] + step)]);
+                let top = angle(i) + 0.5 * STEP * (left - right) / curved;
+                if curved != 0.0 && (at(top) > 0.0) != (here > 0.0) {
+                    roots.push(vec![zero(&at, angle(i) - STEP, top)]);
+                    roots.push(vec![zero(&at, top, angle(i) + STEP)]);
                 }
             }
         }
@@ -143,44 +187,37 @@ impl Reduced {
     /// perpendicular components change sign, or are smallest.
     fn by_grid(&self) -> Vec<Vec<f64>> {
         let u = self.count;
-        let count: usize = [1, 32, 12, 8, 6][u.min(MOST)];
-        let step = std::f64::consts::TAU / count as f64;
-        let size = count.pow(u as u32);
-        let place = |number: usize, j: usize| number / count.pow(j as u32) % count;
-        let angles = |number: usize| {
-            let mut angles = [0.0; MOST];
-            for (j, angle) in angles.iter_mut().enumerate().take(u) {
-                *angle = place(number, j) as f64 * step + 0.31 * (j + 1) as f64;
+        let grid = Grid::new(u);
+        let units: Vec<Vec<Vector2<f64>>> =
+            (0..u).map(|j| (0..grid.side).map(|place| unit(grid.angle(place, j))).collect()).collect();
+        let mut values = vec![[0.0; MOST]; grid.size];
+        for (number, values) in values.iter_mut().enumerate() {
+            let mut d = [Vector2::zeros(); MOST];
+            (0..u).for_each(|j| d[j] = units[j][grid.place(number, j)]);
+            *values = self.smooth(&d);
+        }
+        let norms: Vec<f64> =
+            values.iter().map(|values| values.iter().map(|value| value * value).sum()).collect();
+        // Which components are positive somewhere, and which everywhere, on the corners of the cell that begins at a point.
+        let positive = values.iter().map(|values| (0..u).map(|j| u8::from(values[j] > 0.0) << j).sum());
+        let mut somewhere: Vec<u8> = positive.collect();
+        let mut everywhere = somewhere.clone();
+        let mut least = vec![true; grid.size];
+        for j in 0..u {
+            let (some, all) = (somewhere.clone(), everywhere.clone());
+            for number in 0..grid.size {
+                let (next, before) = (grid.beside(number, j, 1), grid.beside(number, j, grid.side - 1));
+                somewhere[number] |= some[next];
+                everywhere[number] &= all[next];
+                least[number] &= norms[number] <= norms[next] && norms[number] <= norms[before];
             }
-            angles
-        };
-        let values: Vec<[f64; MOST]> = (0..size).map(|number| self.smooth(&angles(number))).collect();
-        // The next or previous grid point along an axis.
-        let beside = |number: usize, j: usize, by: usize| {
-            let stride = count.pow(j as u32);
-            let here = place(number, j);
-            number - here * stride + (here + by) % count * stride
-        };
-        let norm = |values: &[f64; MOST]| values.iter().map(|value| value * value).sum::<f64>();
-        let starts = |&number: &usize| {
-            let here = norm(&values[number]);
-            let least = (0..u).all(|j| {
-                here <= norm(&values[beside(number, j, 1)])
-                    && here <= norm(&values[beside(number, j, count - 1)])
-            });
-            // The corners of the cell with this first corner.
-            let corner = |corner: usize| {
-                (0..u).fold(number, |at, j| if corner >> j & 1 == 1 { beside(at, j, 1) } else { at })
-            };
-            let changes = |j: usize| {
-                let signs = (0..1 << u).map(|i| values[corner(i)][j] > 0.0);
-                signs.fold((false, false), |(up, down), sign| (up | sign, down | !sign)) == (true, true)
-            };
-            least || (0..u).all(changes)
-        };
+        }
+        let changes = |number: usize| somewhere[number] == (1 << u) - 1 && everywhere[number] == 0;
         let mut found: Vec<Vec<f64>> = Vec::new();
-        for number in (0..size).filter(starts) {
-            let Some(angles) = self.newton(angles(number)) else { continue };
+        for number in (0..grid.size).filter(|&number| least[number] || changes(number)) {
+            let mut start = [0.0; MOST];
+            (0..u).for_each(|j| start[j] = grid.angle(grid.place(number, j), j));
+            let Some(angles) = self.newton(start) else { continue };
             let angles = &angles[..u];
             let near = |other: &Vec<f64>| {
                 other.iter().zip(angles).all(|(a, b)| (direction(*a) - direction(*b)).norm() < 1e-6)
@@ -225,13 +262,9 @@ impl Reduced {
         w[3 * j] - self.mu[j] * (w[3 * j + 1] * d.x + w[3 * j + 2] * d.y)
     }
 
-    /// Directions, accelerations along t and s, normal forces, and the equations of these.
-    fn moving(&self, angles: &[f64; MOST]) -> Option<Moving> {
+    /// Accelerations along t and s, normal forces, and the equations of these, for slip along `d`.
+    fn moving(&self, d: &[Vector2<f64>; MOST]) -> Option<Moving> {
         let u = self.count;
-        let mut d = [Vector2::zeros(); MOST];
-        for (d, angle) in d.iter_mut().zip(angles).take(u) {
-            *d = Vector2::new(angle.cos(), angle.sin());
-        }
         let mut normal = [[0.0; MOST]; MOST];
         let mut right = [0.0; MOST];
         for i in 0..u {
@@ -249,14 +282,14 @@ impl Reduced {
             };
             *tangential = Vector2::new(a(3 * i + 1), a(3 * i + 2));
         }
-        Some(Moving { d, tangential, lambda, normal })
+        Some(Moving { tangential, lambda, normal })
     }
 
     /// The perpendicular components of a_tan times the determinant of the equations of the normal forces: a
     /// function without poles.
-    fn smooth(&self, angles: &[f64; MOST]) -> [f64; MOST] {
+    fn smooth(&self, d: &[Vector2<f64>; MOST]) -> [f64; MOST] {
         let mut values = [f64::MAX.sqrt(); MOST];
-        if let Some(Moving { d, tangential, normal, .. }) = self.moving(angles) {
+        if let Some(Moving { tangential, normal, .. }) = self.moving(d) {
             for (value, (d, a)) in values.iter_mut().zip(d.iter().zip(&tangential)) {
                 *value = normal.determinant * (d.x * a.y - d.y * a.x);
             }
@@ -267,7 +300,9 @@ impl Reduced {
     /// The perpendicular components of a_tan, and their derivatives with respect to the angles.
     fn across(&self, angles: &[f64; MOST]) -> Option<Across> {
         let u = self.count;
-        let Moving { d, tangential, lambda, normal } = self.moving(angles)?;
+        let mut d = [Vector2::zeros(); MOST];
+        d.iter_mut().zip(angles).take(u).for_each(|(d, &angle)| *d = unit(angle));
+        let Moving { tangential, lambda, normal } = self.moving(&d)?;
         let turned = d.map(|d| Vector2::new(-d.y, d.x));
         // The derivative of the contribution of a normal force with respect to its angle.
         let turn = |row: usize, j: usize| {
@@ -300,7 +335,6 @@ impl Reduced {
 }
 
 struct Moving {
-    d: [Vector2<f64>; MOST],
     tangential: [Vector2<f64>; MOST],
     lambda: [f64; MOST],
     normal: Small,
@@ -360,8 +394,7 @@ impl Small {
     }
 }
 
-/// Number of samples around the circle, and largest number of Newton steps.
-const SAMPLES: usize = 256;
+/// Largest number of Newton steps.
 const ROUNDS: usize = 30;
 
 /// The zero between two angles with values of opposite sign: bisection and secants.

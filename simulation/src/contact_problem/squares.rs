@@ -17,9 +17,24 @@ use nalgebra::{DMatrix, DVector};
 
 use super::cone::Cone;
 
+/// The entries of a square over the variables, and its right side.
+struct Row {
+    entries: DVector<f64>,
+    right: f64,
+    /// of the entries
+    greatest: f64,
+}
+
+impl Row {
+    fn new(entries: DVector<f64>, right: f64) -> Self {
+        let greatest = entries.amax();
+        Self { entries, right, greatest }
+    }
+}
+
 /// A sum of squares: rows over (y, s), and the right sides for which -J^T e is the gradient.
 pub(super) struct Squares {
-    rows: Vec<(DVector<f64>, f64)>,
+    rows: Vec<Row>,
 }
 
 impl Squares {
@@ -35,7 +50,7 @@ impl Squares {
                 }
             }
             row[p] = by_s;
-            rows.push((row, right));
+            rows.push(Row::new(row, right));
         };
         for cone in cones {
             let n = x[cone.normal] - s;
@@ -57,27 +72,27 @@ impl Squares {
         for j in 0..p {
             let mut row = DVector::zeros(p + 1);
             row[j] = 1.0 / load;
-            rows.push((row, -along[j] / load));
+            rows.push(Row::new(row, -along[j] / load));
         }
         Self { rows }
     }
 
     /// Adds a square that depends on s alone.
     pub fn add(&mut self, by_s: f64, right: f64) {
-        let Some((first, _)) = self.rows.first() else { return };
-        let mut row = DVector::zeros(first.len());
-        row[first.len() - 1] = by_s;
-        self.rows.push((row, right));
+        let Some(size) = self.rows.first().map(|row| row.entries.len()) else { return };
+        let mut row = DVector::zeros(size);
+        row[size - 1] = by_s;
+        self.rows.push(Row::new(row, right));
     }
 
     /// The Newton step of the first `variables` variables, with the rate `along` of the last variable, and
     /// its length in the metric of the Hessian.
     pub fn step(mut self, variables: usize, along: f64) -> Option<(DVector<f64>, f64)> {
         // Large rows first, so that small ones keep their digits.
-        self.rows.sort_by(|one, other| other.0.amax().total_cmp(&one.0.amax()));
+        self.rows.sort_by(|one, other| other.greatest.total_cmp(&one.greatest));
         let count = self.rows.len();
-        let matrix = DMatrix::from_fn(count, variables, |i, j| self.rows[i].0[j]);
-        let mut right = DVector::from_fn(count, |i, _| self.rows[i].1);
+        let matrix = DMatrix::from_fn(count, variables, |i, j| self.rows[i].entries[j]);
+        let mut right = DVector::from_fn(count, |i, _| self.rows[i].right);
         let qr = matrix.qr();
         qr.q_tr_mul(&mut right);
         let r = qr.r();

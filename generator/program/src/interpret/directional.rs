@@ -3,6 +3,7 @@
 //!
 //! Values have the bits of [`super::Prepared`]. Derivatives have no step size and no truncation error.
 
+use super::schedule::Schedule;
 use crate::interpret::prepared::{Arguments, Constants, Failed};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
@@ -54,10 +55,10 @@ fn lanes(list: &[f64], index: usize, first: usize, k: usize) -> [f64; LANES] {
 #[derive(Clone, Debug)]
 pub struct Directional {
     directions: usize,
-    /// for each block of directions the values that depend on parameters alone
-    templates: Vec<Vec<(Dual, Dual)>>,
-    inputs: Vec<(usize, Input)>,
-    steps: Vec<(usize, Operation)>,
+    /// for each block of directions the numbers of the schedule's constants
+    constants: Vec<Vec<Dual>>,
+    schedule: Schedule,
+    /// places of the results
     results: Vec<usize>,
 }
 
@@ -73,46 +74,35 @@ impl Directional {
         quantities: &[Quantity],
     ) -> Self {
         let slice = program.slice(quantities);
-        let blocks = directions.div_ceil(LANES).max(1);
-        let mut place = vec![usize::MAX; program.operations.len()];
-        let mut new = Directional {
-            directions,
-            templates: vec![Vec::with_capacity(slice.order.len()); blocks],
-            inputs: Vec::new(),
-            steps: Vec::new(),
-            results: Vec::new(),
-        };
+        let (schedule, places) = Schedule::new(program, constants, &slice);
+        let blocks = 0..directions.div_ceil(LANES).max(1);
+        let early: Vec<Value> =
+            slice.order.iter().copied().filter(|&value| constants.stage(value) <= Stage::Parameter).collect();
         let none = Inputs::default();
-        for (at, &value) in slice.order.iter().enumerate() {
-            place[value.index()] = at;
-            let operation = program.operation(value).map(|operand| Value(place[operand.index()] as u32));
-            let early = constants.stage(value) <= Stage::Parameter;
-            for (block, template) in new.templates.iter_mut().enumerate() {
-                template.push(match operation {
-                    _ if !early => (Dual::exactly(0.0), Dual::exactly(0.0)),
+        let of_block = |block: usize| {
+            let mut numbers = vec![(Dual::exactly(0.0), Dual::exactly(0.0)); program.operations.len()];
+            for &value in &early {
+                numbers[value.index()] = match program.operation(value) {
                     Operation::Input(Input::Parameter(index)) => {
                         let value = parameters.get(index as usize).copied().unwrap_or(f64::NAN);
                         let by = lanes(by_parameters, index as usize, block * LANES, directions);
                         (Dual { value, by }, Dual::exactly(0.0))
                     }
-                    _ => {
+                    operation => {
                         // The values are computed in double-double arithmetic.
                         let (first, second) =
-                            operate(operation, &none, |value: Value| template[value.index()]);
+                            operate(operation, &none, |value: Value| numbers[value.index()]);
                         let (a, b) = constants.pair(value);
                         (Dual { value: a, ..first }, Dual { value: b, ..second })
                     }
-                });
+                };
             }
-            match operation {
-                _ if early => {}
-                Operation::Input(input) => new.inputs.push((at, input)),
-                _ => new.steps.push((at, operation)),
-            }
-        }
+            schedule.constants().iter().map(|value| numbers[value.index()].0).collect()
+        };
+        let constants = blocks.map(of_block).collect();
         let results = slice.outputs.iter().flat_map(|output| &output.values);
-        new.results = results.map(|value| place[value.index()]).collect();
-        new
+        let results = results.map(|&value| places.of(value)).collect();
+        Directional { directions, constants, schedule, results }
     }
 
     /// Number of results.
@@ -144,18 +134,12 @@ impl Directional {
         values.resize(self.results.len(), 0.0);
         derivatives.clear();
         derivatives.resize(self.results.len() * k, 0.0);
-        let none = Inputs::default();
-        for (block, template) in self.templates.iter().enumerate() {
+        for (block, constants) in self.constants.iter().enumerate() {
             let first = block * LANES;
-            let mut numbers = template.clone();
-            for &(at, input) in &self.inputs {
-                numbers[at].0 = Dual { value: arguments.get(input), by: rates.get(input, first, k) };
-            }
-            for &(at, operation) in &self.steps {
-                numbers[at] = operate(operation, &none, |value| numbers[value.index()]);
-            }
+            let input = |input| Dual { value: arguments.get(input), by: rates.get(input, first, k) };
+            let numbers = self.schedule.execute(constants, input);
             for (index, &at) in self.results.iter().enumerate() {
-                let number = numbers[at].0;
+                let number = numbers[at];
                 values[index] = number.value;
                 let row = derivatives.get_mut(index * k + first..(index + 1) * k).unwrap_or(&mut []);
                 row.iter_mut().zip(number.by).for_each(|(slot, rate)| *slot = rate);

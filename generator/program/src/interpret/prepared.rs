@@ -1,10 +1,11 @@
-//! Prepares quantities for repeated evaluation: selects and renumbers the operations that they need, and
+//! Prepares quantities for repeated evaluation: selects and orders the operations that they need, and
 //! computes the values that depend on parameters alone once. The results have the same bits as those of
 //! [`super::Evaluator`].
 
+use super::schedule::Schedule;
 use crate::program::graph::Input;
-use crate::program::operation::{Operation, Stage, Value};
-use crate::program::{Inputs, Program, Quantity, VANISHING, operate};
+use crate::program::operation::{Stage, Value};
+use crate::program::{Guard, Inputs, Program, Quantity, VANISHING, operate};
 use hodograph_model::arithmetic::DoubleDouble;
 
 /// The inputs of a program without the parameters, borrowed; each in the unit that the model declares, in
@@ -119,17 +120,13 @@ struct Check {
 /// Some quantities of a program, prepared for repeated evaluation with the same parameters.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// initial content of the numbers: constants, and values that depend on parameters alone
-    template: Vec<(f64, f64)>,
-    /// for each number the value of the program
-    values: Vec<Value>,
-    inputs: Vec<(usize, Input)>,
-    /// for each step the index of its result, and its operation on results with smaller indices
-    steps: Vec<(usize, Operation)>,
+    schedule: Schedule,
+    /// the numbers of the schedule's constants
+    constants: Vec<f64>,
     checks: Vec<Check>,
-    /// indices of the results, quantity by quantity, by rows
+    /// places of the results, quantity by quantity, by rows
     results: Vec<usize>,
-    /// indices of the results that are not constant
+    /// places of the results that are not constant
     computed: Vec<usize>,
 }
 
@@ -146,52 +143,30 @@ impl Prepared {
     /// Prepares those of the quantities that the program has, in this order.
     pub fn new(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Self {
         let slice = program.slice(quantities);
-        let mut place = vec![usize::MAX; program.operations.len()];
-        let mut prepared = Prepared {
-            template: Vec::new(),
-            values: slice.order.clone(),
-            inputs: Vec::new(),
-            steps: Vec::new(),
-            checks: Vec::new(),
-            results: Vec::new(),
-            computed: Vec::new(),
+        let (schedule, places) = Schedule::new(program, constants, &slice);
+        let late = |value: Value| constants.stage(value) > Stage::Parameter;
+        let guards = slice
+            .guards
+            .iter()
+            .filter(|guard| program.guard_stage(guard, &constants.stages) > Stage::Parameter);
+        let check = |guard: &&Guard| Check {
+            value: places.of(guard.value),
+            scale: guard.scale.map(|scale| places.of(scale)),
+            guard: program.guards.iter().position(|other| other == *guard).unwrap_or(usize::MAX),
         };
-        for &value in &slice.order {
-            let at = prepared.template.len();
-            place[value.index()] = at;
-            prepared.template.push(constants.rounded[value.index()]);
-            if constants.stage(value) > Stage::Parameter {
-                match program.operation(value) {
-                    Operation::Input(input) => prepared.inputs.push((at, input)),
-                    operation => {
-                        let renumbered = operation.map(|operand| Value(place[operand.index()] as u32));
-                        prepared.steps.push((at, renumbered));
-                    }
-                }
-            }
-        }
-        for guard in &slice.guards {
-            if program.guard_stage(guard, &constants.stages) > Stage::Parameter {
-                prepared.checks.push(Check {
-                    value: place[guard.value.index()],
-                    scale: guard.scale.map(|scale| place[scale.index()]),
-                    guard: program.guards.iter().position(|other| other == *guard).unwrap_or(usize::MAX),
-                });
-            }
-        }
-        for &value in slice.outputs.iter().flat_map(|output| &output.values) {
-            prepared.results.push(place[value.index()]);
-            if constants.stage(value) > Stage::Parameter {
-                prepared.computed.push(place[value.index()]);
-            }
-        }
-        prepared
+        let checks = guards.map(check).collect();
+        let values: Vec<Value> =
+            slice.outputs.iter().flat_map(|output| output.values.iter().copied()).collect();
+        let results = values.iter().map(|&value| places.of(value)).collect();
+        let computed = values.iter().filter(|&&value| late(value)).map(|&value| places.of(value)).collect();
+        let numbers = schedule.constants().iter().map(|&value| constants.get(value)).collect();
+        Prepared { schedule, constants: numbers, checks, results, computed }
     }
 
     /// Replaces the parameters.
     pub fn refresh(&mut self, constants: &Constants) {
-        for (number, value) in self.template.iter_mut().zip(&self.values) {
-            *number = constants.rounded[value.index()];
+        for (number, &value) in self.constants.iter_mut().zip(self.schedule.constants()) {
+            *number = constants.get(value);
         }
     }
 
@@ -215,26 +190,19 @@ impl Prepared {
         arguments: &Arguments<'_>,
         mut with: impl FnMut(usize, f64),
     ) -> Result<(), Failed> {
-        let mut numbers = self.template.clone();
-        for &(at, input) in &self.inputs {
-            numbers[at].0 = arguments.get(input);
-        }
-        let none = Inputs::default();
-        for &(at, operation) in &self.steps {
-            numbers[at] = operate(operation, &none, |value| numbers[value.index()]);
-        }
+        let numbers = self.schedule.execute(&self.constants, |input| arguments.get(input));
         for check in &self.checks {
-            let value = numbers[check.value].0;
-            let bound = check.scale.map_or(0.0, |scale| VANISHING * numbers[scale].0.abs());
+            let value = numbers[check.value];
+            let bound = check.scale.map_or(0.0, |scale| VANISHING * numbers[scale].abs());
             if !holds(value, bound) {
                 let finite = value.is_finite() && bound.is_finite();
                 return Err(if finite { Failed::Singular(check.guard) } else { Failed::NotFinite });
             }
         }
-        if !self.computed.iter().all(|&at| numbers[at].0.is_finite()) {
+        if !self.computed.iter().all(|&at| numbers[at].is_finite()) {
             return Err(Failed::NotFinite);
         }
-        self.results.iter().enumerate().for_each(|(index, &at)| with(index, numbers[at].0));
+        self.results.iter().enumerate().for_each(|(index, &at)| with(index, numbers[at]));
         Ok(())
     }
 }
