@@ -155,16 +155,19 @@ pub(crate) fn has_passed(here: &Evaluation, place: usize, scale: &[f64]) -> bool
 
 /// Whether slip that has a direction is so small that its rate could end it within a time, were it
 /// against the slip. A slip of 1e-10 m/s has the direction that the errors of the steps before leave it: it
-/// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalised speeds, `scale` the
-/// greatest so far.
+/// may seem to grow while it turns, and ends nevertheless; slip that grows straight along its direction does not turn.
+/// `speeds` are the generalised speeds, `scale` the greatest so far.
 pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64], scale: &[f64], within: f64) -> bool {
     if is_rounding(here, place, scale) {
         return false;
     }
-    let Some(forces) = here.forces.as_ref() else { return false };
-    let rate = hypot(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+    let (Hold::Slide(d), Some(forces)) = (here.holds[place], here.forces.as_ref()) else { return false };
+    let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+    let (along, size) = (rate.dot(&d), hypot(rate.x, rate.y));
     let slip = here.support.slip(place).norm();
-    slip > DIRECTION * here.support.velocity_size(place, speeds) && slip < within * rate
+    along < STRAIGHT * size
+        && slip > DIRECTION * here.support.velocity_size(place, speeds)
+        && slip < within * size
 }
 
 /// Whether slip decreases along its direction, so that it reaches zero without turning.
@@ -174,7 +177,8 @@ pub(crate) fn straight(here: &Evaluation, place: usize) -> bool {
     rate.dot(d) <= -STRAIGHT * rate.norm()
 }
 
-/// The least cosine of the angle between slip that decreases straight to zero and its negative rate.
+/// The least cosine of the angle between slip that decreases straight to zero, or grows straight, and its rate or the
+/// opposite of it.
 const STRAIGHT: f64 = 1.0 - 1e-9;
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! floating-point functions.
 
 pub mod columns;
+mod constants;
 mod directional;
 mod prepared;
 mod schedule;
@@ -16,10 +17,12 @@ use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Guard, Inputs, Program, Quantity, Slice, VANISHING, operate};
 use hodograph_model::arithmetic::DoubleDouble;
 
+use constants::holds;
+
 pub use columns::{Column, Columns, Table};
+pub use constants::Constants;
 pub use directional::{Directional, Rates};
-use prepared::holds;
-pub use prepared::{Arguments, Constants, Failed, Prepared};
+pub use prepared::{Arguments, Failed, Prepared};
 
 /// The values of a quantity.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,8 @@
 //! Values have the bits of [`super::Prepared`]. Derivatives have no step size and no truncation error.
 
 use super::schedule::Schedule;
-use crate::interpret::prepared::{Arguments, Constants, Failed};
+use crate::interpret::constants::Constants;
+use crate::interpret::prepared::{Arguments, Failed};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Inputs, Program, Quantity, operate};

@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use super::prepared::Constants;
+use super::constants::Constants;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Program, Slice};

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::mem::discriminant;
 
-use crate::interpret::prepared::Constants;
+use crate::interpret::constants::Constants;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Program, Quantity};

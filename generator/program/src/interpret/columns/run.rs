@@ -3,7 +3,8 @@
 use super::compile::{Code, Columns, Step};
 use super::lanes::{InSlot, LANES, Numbers, Operand, Slot, Uniform, WIDTH};
 use super::table::Table;
-use crate::interpret::prepared::{Failed, holds};
+use crate::interpret::constants::holds;
+use crate::interpret::prepared::Failed;
 use crate::program::VANISHING;
 use hodograph_model::arithmetic::{call, call2, mul_add};
 

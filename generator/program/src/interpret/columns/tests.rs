@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::artifact;
-use crate::interpret::prepared::{Arguments, Constants, Failed, Prepared};
+use crate::interpret::constants::Constants;
+use crate::interpret::prepared::{Arguments, Failed, Prepared};
 use crate::program::operation::{Bits, Operation as O, Value};
 use crate::program::{Guard, Output, Program, Quantity, graph::Input};
 
