@@ -56,7 +56,7 @@ impl Transition<'_> {
             if fits {
                 break;
             }
-            return match self.chosen_at(contacts, &step)? {
+            return match self.chosen_at(contacts, &was, &step)? {
                 // Nothing changes: the conditions are violated by no more than the errors of the state.
                 Ok(choice) if self.go_on(contacts, &choice) => break,
                 Ok(choice) => {
@@ -80,7 +80,7 @@ impl Transition<'_> {
             return Ok(());
         }
         for round in 0..ROUNDS {
-            match self.modes_ahead(contacts, round)? {
+            match self.modes_ahead(contacts, was, round)? {
                 Ahead::Fit => return Ok(()),
                 Ahead::End(choice) => {
                     self.forget_mode_events(contacts);
@@ -94,14 +94,14 @@ impl Transition<'_> {
     }
 
     /// Whether the present modes are still admissible a little later, and the admissible ones.
-    fn modes_ahead(&self, contacts: &[usize], round: usize) -> Result<Ahead, SimulationError> {
+    fn modes_ahead(&self, contacts: &[usize], was: &[Phase], round: usize) -> Result<Ahead, SimulationError> {
         let closed = self.closed();
         let Some(step) = self.part(&closed, self.ahead(round / 2)) else { return Ok(Ahead::Fit) };
         let fits = self.clear(&closed, &step).is_none_or(|(_, fits)| fits);
         if fits && self.opened(contacts, &step)? {
             return Ok(Ahead::Fit);
         }
-        Ok(self.chosen_at(contacts, &step)?.map_or(Ahead::Fit, Ahead::End))
+        Ok(self.chosen_at(contacts, was, &step)?.map_or(Ahead::Fit, Ahead::End))
     }
 
     /// New slip begins from zero, since a rounding error of the previous slip would have a direction.
@@ -147,8 +147,14 @@ impl Transition<'_> {
         Some((!forward || violated || !near, fits))
     }
 
-    /// The modes that the state at the end of a step requires.
-    fn chosen_at(&self, contacts: &[usize], step: &Step) -> Result<Result<Choice, Lacking>, SimulationError> {
+    /// The modes that the state at the end of a step requires; `was` are the phases before the event. A contact that
+    /// has opened since has the slip that it had: it does not begin from rest if it closes again.
+    fn chosen_at(
+        &self,
+        contacts: &[usize],
+        was: &[Phase],
+        step: &Step,
+    ) -> Result<Result<Choice, Lacking>, SimulationError> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&step.end);
         let time = step.t + step.h;
@@ -160,16 +166,21 @@ impl Transition<'_> {
         let slips: Vec<Option<Vector2<f64>>> = contacts
             .iter()
             .enumerate()
-            .map(|(i, &contact)| match self.front.phases[contact] {
-                // Slip that began here against its direction counts as zero.
-                Phase::Slide(began) => {
-                    let slip = support.slip(i);
-                    let size = support.velocity_size(i, u).max(support.velocity_size(i, &self.front.scale));
-                    let known = settled.iter().find(|(other, _)| *other == contact);
-                    (slip.norm() > NO_SLIP * size && slip.dot(&began) > 0.0)
-                        .then(|| known.map_or_else(|| slip / slip.norm(), |(_, direction)| *direction))
+            .map(|(i, &contact)| {
+                let slip = support.slip(i);
+                let size = support.velocity_size(i, u).max(support.velocity_size(i, &self.front.scale));
+                let slips = slip.norm() > NO_SLIP * size;
+                let now = self.front.phases[contact];
+                match if now.is_closed() { now } else { was[contact] } {
+                    // Slip that began here against its direction counts as zero.
+                    Phase::Slide(began) => {
+                        let known = settled.iter().find(|(other, _)| *other == contact);
+                        (slips && slip.dot(&began) > 0.0)
+                            .then(|| known.map_or_else(|| slip / slip.norm(), |(_, direction)| *direction))
+                    }
+                    Phase::Stick => None,
+                    Phase::Open(_) => slips.then(|| slip / slip.norm()),
                 }
-                _ => None,
             })
             .collect();
         let friction = self.frictions(contacts, &slips, &support)?;
