@@ -5,6 +5,8 @@
 //! together ([`contact_problem::solve`]), and determine the modes. Contacts that leave their static cones
 //! slip with the sliding coefficient (docs/theory.md, section 17.15).
 
+use std::cell::Cell;
+
 use hodograph::{ContactError, ContactMode, Selection, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
@@ -226,7 +228,8 @@ fn decision(mode: ContactMode, direction: Option<Vector2<f64>>) -> Decision {
 
 /// Turns the directions in which slip begins until the acceleration perpendicular to each has the given
 /// value, 0 for slip along the acceleration: Newton's method for the angles. `begin` are these contacts, by
-/// their indices in the forces and in the directions.
+/// their indices in the forces and in the directions. `None` if there are no such directions nearby; these are then the
+/// best that were found.
 pub(crate) fn begin_along(
     begin: &[(usize, usize)],
     directions: &mut [Option<Vector2<f64>>],
@@ -239,9 +242,11 @@ pub(crate) fn begin_along(
     let m = begin.len();
     // New slip cannot be opposite to the acceleration; existing slip can.
     let starts = wanted.iter().all(|wanted| *wanted == 0.0);
-    // The perpendicular components, relative to the size of the acceleration.
+    // The perpendicular components, beyond those that are wanted; accelerations without forces say how large they are.
+    let free = Cell::new(0.0);
     let across = |directions: &[Option<Vector2<f64>>]| -> Option<DVector<f64>> {
         let found = forces(directions)?;
+        free.set(found.free);
         let mut residual = DVector::zeros(m);
         for (row, &(place, i)) in begin.iter().enumerate() {
             let d = directions[i]?;
@@ -302,7 +307,7 @@ pub(crate) fn begin_along(
             break;
         }
     }
-    Some(())
+    (residual.amax() <= ALONG * free.get()).then_some(())
 }
 
 /// Largest number of Newton steps, the difference of angles for its derivatives, and angles below which only
@@ -310,6 +315,8 @@ pub(crate) fn begin_along(
 const TURNS: usize = 30;
 const TURN: f64 = 1e-6;
 const ROUNDED: f64 = 1e-10;
+/// Perpendicular accelerations that may remain, relative to those without forces.
+const ALONG: f64 = 1e-8;
 
 #[cfg(test)]
 mod tests {

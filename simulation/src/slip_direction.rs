@@ -15,7 +15,7 @@ use crate::mode_selection::begin_along;
 use crate::phase::{Closed, mus};
 
 /// The modes of contacts with the directions that follow from the state; `omega` holds the rates of the
-/// settled ones.
+/// settled ones. `None` if there are no such directions; these are then the best that were found.
 pub(crate) fn settle_directions(
     support: &ClosedContacts,
     closed: &[Closed],
@@ -34,9 +34,9 @@ pub(crate) fn settle_directions(
         holds.copy_from_slice(&together);
         return Some(());
     }
-    begin_along(&settled, &mut directions, &across, |directions| solve(&with(directions)).ok())?;
+    let found = begin_along(&settled, &mut directions, &across, |directions| solve(&with(directions)).ok());
     holds.copy_from_slice(&with(&directions));
-    Some(())
+    found
 }
 
 /// The modes of contacts that slip together with such small accelerations that their directions cannot be

@@ -192,8 +192,9 @@ fn two_cubes() {
         turn(m, start, random, ["e02", "e12", "e22", "e32"], Some(0.4));
         speeds(m, start, random, 0.3, 1.0);
     };
-    // The last one slides to its end with hardly any forces left that the laws allow.
-    campaign(&Family::new("cubes2", 2.0, [1.0, 0.6], throw), 0..4);
+    // 3 slides to its end with hardly any forces left that the laws allow. In 53, 96, 164 and 166 corners begin to slip so
+    // slowly that no search finds the directions in which they settle; they were taken for settled.
+    campaign(&Family::new("cubes2", 2.0, [1.0, 0.6], throw), (0..4).chain([53, 96, 164, 166]));
 }
 
 #[test]
