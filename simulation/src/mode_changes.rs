@@ -151,12 +151,22 @@ impl Transition<'_> {
         }
         let candidates = &self.mechanism.with_torques(candidates)[..];
         self.front.resting = false;
-        // The velocities of contacts without slip are projected, so that their slip is exactly zero.
-        let slips = self.slips_of(candidates)?;
+        // The velocities of contacts without slip are projected, so that their slip is exactly zero. What is projected,
+        // an approach too slow for an impact too, changes slip as slow as itself: its direction is that afterwards.
+        let mut slips = self.slips_of(candidates)?;
+        for _ in 0..=candidates.len() {
+            for (&contact, slip) in candidates.iter().zip(&slips) {
+                self.front.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
+            }
+            self.correct()?;
+            let before = std::mem::replace(&mut slips, self.slips_of(candidates)?);
+            if before.iter().zip(&slips).all(|(before, after)| before.is_some() == after.is_some()) {
+                break;
+            }
+        }
         for (&contact, slip) in candidates.iter().zip(&slips) {
             self.front.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
         }
-        self.correct()?;
         let (n, p) =
             (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let inputs =

@@ -129,7 +129,8 @@ fn choose_with(
         let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
         return Ok(chosen(problem, &modes, &rest.force));
     }
-    let solution = contact_problem::solve(problem, Some(before)).map_err(|unsolved| match unsolved {
+    let found = contact_problem::solve_without_jam(problem, Some(before));
+    let (solution, middle) = found.map_err(|unsolved| match unsolved {
         Unsolved::Jam { contact, .. } => {
             let free_acceleration = support.beta[3 * contact];
             Lacking::Contact(contact, ContactError::Jam { free_acceleration })
@@ -137,8 +138,8 @@ fn choose_with(
         _ => Lacking::Common,
     })?;
     // Among many forces for this motion the analytic centre.
-    match contact_problem::with_modes(problem, &solution.modes) {
-        Ok(middle) if middle.margin >= 0.0 => Ok(chosen(problem, &solution.modes, &middle.force)),
+    match middle {
+        Some(middle) if middle.margin >= 0.0 => Ok(chosen(problem, &solution.modes, &middle.force)),
         _ => Ok(chosen(problem, &solution.modes, &solution.force)),
     }
 }

@@ -1,10 +1,10 @@
-//! Whether many contacts may move otherwise, too.
+//! Other motions of contacts: of few by their modes, of many from other starts.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
 use nalgebra::DVector;
 
-use super::{Problem, certified::attempt};
+use super::{Problem, Solution, certified::attempt};
 
 /// Accelerations that differ by more than this part of their terms are those of two motions.
 const DIFFERS: f64 = 1e-8;
@@ -16,23 +16,27 @@ const LEAST: usize = 2;
 const OPEN: f64 = 0.4;
 const GREATEST: f64 = 3.0;
 
-/// Whether forces that obey the laws and cause other accelerations than these were found: by the method for
-/// unknown modes, from starts in which some contacts are open and others press and rub otherwise. `false` does
-/// not mean that there are none.
+/// Whether forces that obey the laws and cause other accelerations than these were found. `false` does not mean that
+/// there are none.
 pub fn another(problem: &Problem<'_>, force: &DVector<f64>) -> bool {
+    others(problem, force).next().is_some()
+}
+
+/// Solutions with other accelerations than these forces cause: found by the method for unknown modes, from starts in
+/// which some contacts are open and others press and rub otherwise. One may appear again.
+pub(super) fn others<'a>(
+    problem: &'a Problem<'a>,
+    force: &DVector<f64>,
+) -> impl Iterator<Item = Solution> + 'a {
     let k = problem.contacts();
     let acceleration = problem.w * force + problem.beta;
     let terms = problem.beta.amax() + (problem.w.abs() * force.abs()).amax();
-    let differs = |start: &DVector<f64>| {
-        attempt(problem, Some(start))
-            .is_ok_and(|found| (found.acceleration - &acceleration).amax() > DIFFERS * terms)
-    };
     let smooth = vec![0.0; k];
     let pressed = attempt(&Problem { mu: &smooth, ..*problem }, None);
     let pressed = pressed.map_or_else(|_| force.clone(), |found| found.force);
     let count = if k <= FEW { STARTS } else { (STARTS * FEW * FEW / (k * k)).max(LEAST) };
     let mut places = Places(0.0);
-    (0..count).any(|_| {
+    (0..count).filter_map(move |_| {
         let mut start = DVector::zeros(3 * k);
         for i in 0..k {
             let (opens, size, angle, share) = (places.next(), places.next(), places.next(), places.next());
@@ -47,7 +51,8 @@ pub fn another(problem: &Problem<'_>, force: &DVector<f64>) -> bool {
                 start[3 * i + 2] = if across { friction * sin } else { 0.0 };
             }
         }
-        differs(&start)
+        let found = attempt(problem, Some(&start)).ok()?;
+        ((&found.acceleration - &acceleration).amax() > DIFFERS * terms).then_some(found)
     })
 }
 

@@ -30,6 +30,7 @@ mod problem;
 mod solve;
 mod sparse;
 mod squares;
+mod without_jam;
 
 pub use self::{
     another::another,
@@ -45,4 +46,5 @@ pub(crate) use self::{
     common_slip::slip_together,
     motion::is_slow,
     prescribed::{Wanted, found},
+    without_jam::solve_without_jam,
 };
