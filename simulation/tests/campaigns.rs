@@ -232,7 +232,8 @@ fn chains_of_ten() {
         }
         speeds(m, start, random, 0.5, 4.0);
     };
-    campaign(&Family::new("chain10", LONG, [1.0, 0.5], throw), 0..1);
+    // In 44 the chain lies straight on its feet, which can hardly move relative to each other.
+    campaign(&Family::new("chain10", LONG, [1.0, 0.5], throw), [0, 44]);
 }
 
 /// Three to eight dominoes, the first of which is pushed; the others stand far away.

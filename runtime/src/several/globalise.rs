@@ -39,7 +39,7 @@ pub enum Unfound<T> {
 /// The numbers of memory that [`solve_several`] needs for k contacts.
 pub const fn memory_of_several(k: usize) -> usize {
     let n = 3 * k;
-    n * n + 11 * n + k
+    n * n + 12 * n + k
 }
 
 /// Forces and accelerations of k contacts; `force` holds a first guess, or zeros.
@@ -48,7 +48,8 @@ pub const fn memory_of_several(k: usize) -> usize {
 /// [`memory_of_several`] numbers. At most 7000 steps of Newton's method are made; usual are 5 to 30.
 ///
 /// # Errors
-/// See [`Unfound`]. Forces whose certificate is above 4096 eps (9e-13) are never returned.
+/// See [`Unfound`]. Forces whose certificate is above 4096 eps (9e-13) are never returned as an answer; with
+/// [`Unfound::NotFound`] `force` holds those with the least violation, if any were near.
 pub fn solve_several<T: Scalar, S: NewtonSteps<T>>(
     problem: &SeveralContacts<'_, T>,
     force: &mut [T],
@@ -70,6 +71,7 @@ pub fn solve_several<T: Scalar, S: NewtonSteps<T>>(
     let (beta, memory) = memory.split_at_mut(n);
     let (terms, memory) = memory.split_at_mut(n);
     let (start, memory) = memory.split_at_mut(n);
+    let (nearest, memory) = memory.split_at_mut(n);
     let mut parts = memory.chunks_exact_mut(n);
     let mut part = || parts.next().unwrap_or_default();
     let vectors = Vectors {
@@ -87,11 +89,16 @@ pub fn solve_several<T: Scalar, S: NewtonSteps<T>>(
         let given = *force / (scaled.scale[i / 3] * scaled.unit);
         *start = if given.is_finite() { given } else { T::zero() };
     }
-    let mut search = Search { scaled, vectors, terms, start, least: None };
+    let mut search = Search { scaled, vectors, terms, start, nearest, least: None };
     let found = search.run(steps);
     let least = search.least.unwrap_or(T::max_value().unwrap_or(T::one()));
-    let Some(found) = found else { return Err(Unfound::NotFound { violation: least }) };
-    let Search { scaled, vectors, .. } = search;
+    let Search { scaled, vectors, nearest, .. } = search;
+    let Some(found) = found else {
+        for (i, (force, nearest)) in force.iter_mut().zip(nearest.iter()).enumerate() {
+            *force = *nearest * scaled.scale[i / 3] * scaled.unit;
+        }
+        return Err(Unfound::NotFound { violation: least });
+    };
     scaled.rates(vectors.best, vectors.v);
     for i in 0..n {
         let scale = scaled.scale[i / 3];
@@ -161,7 +168,9 @@ struct Search<'a, T: Scalar> {
     vectors: Vectors<'a, T>,
     terms: &'a mut [T],
     start: &'a mut [T],
-    /// The least violation so far.
+    /// The forces with the least violation so far.
+    nearest: &'a mut [T],
+    /// Their violation.
     least: Option<T>,
 }
 
@@ -256,6 +265,7 @@ impl<T: Scalar> Search<'_, T> {
         let greatest = found.greatest();
         if self.least.is_none_or(|least| greatest < least) {
             self.least = Some(greatest);
+            self.nearest.copy_from_slice(best);
         }
         (greatest <= constant::<T>(ACCEPTED) * T::default_epsilon()).then_some(found)
     }

@@ -16,12 +16,25 @@ use super::{
     sparse::Sparse,
 };
 
+/// Why the method of the runtime has no answer.
+pub(super) struct Refused {
+    pub reason: Unsolved,
+    /// The forces with the least violation; none for an invalid problem.
+    pub nearest: Option<DVector<f64>>,
+}
+
+impl From<Unsolved> for Refused {
+    fn from(reason: Unsolved) -> Self {
+        Self { reason, nearest: None }
+    }
+}
+
 /// The method of the runtime on this problem.
-pub(super) fn attempt(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solution, Unsolved> {
+pub(super) fn attempt(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solution, Refused> {
     problem.check()?;
     let (k, n) = (problem.contacts(), 3 * problem.contacts());
     if guess.is_some_and(|guess| guess.len() != n) {
-        return Err(Unsolved::Lengths);
+        return Err(Unsolved::Lengths.into());
     }
     let beta = without_noise(problem);
     let contacts = several_contacts(problem, &beta);
@@ -29,18 +42,21 @@ pub(super) fn attempt(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Re
     let mut acceleration = vec![0.0; n];
     let mut memory = vec![0.0; memory_of_several(k)];
     let sparse = if k >= SPARSE { Sparse::new(problem.w) } else { None };
-    let certificate = match sparse {
+    let found = match sparse {
         Some(mut steps) => solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps),
         None => {
             let mut matrix = vec![0.0; n * n];
             let mut steps = Dense::new(&mut matrix);
             solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps)
         }
-    }
-    .map_err(unsolved)?;
+    };
     let force = DVector::from_vec(force);
+    let certificate = match found {
+        Ok(certificate) => certificate,
+        Err(reason) => return Err(Refused { reason: unsolved(reason), nearest: Some(force) }),
+    };
     let acceleration = problem.w * &force + problem.beta;
-    let modes = modes(problem, &force, &acceleration);
+    let modes = modes(problem, &force, &acceleration, &zeros(problem, &force, ZERO));
     Ok(Solution { force, acceleration, modes, certificate, solutions: Solutions::Unknown })
 }
 
@@ -72,18 +88,28 @@ fn unsolved(reason: Unfound<f64>) -> Unsolved {
     }
 }
 
-/// The mode of each contact.
-pub(super) fn modes(problem: &Problem<'_>, force: &DVector<f64>, acceleration: &DVector<f64>) -> Vec<Mode> {
+/// What counts as zero in the accelerations that these forces cause: this part of their terms.
+pub(super) fn zeros(problem: &Problem<'_>, force: &DVector<f64>, part: f64) -> DVector<f64> {
     let mut terms = problem.beta.abs();
     for (column, force) in problem.w.column_iter().zip(force.iter()) {
         for (terms, entry) in terms.iter_mut().zip(column.iter()) {
             *terms += (entry * force).abs();
         }
     }
+    DVector::from_fn(terms.len(), |row, _| part * three(&terms, row / 3).amax() + problem.noise(row))
+}
+
+/// The mode of each contact, where accelerations up to these count as zero.
+pub(super) fn modes(
+    problem: &Problem<'_>,
+    force: &DVector<f64>,
+    acceleration: &DVector<f64>,
+    zeros: &DVector<f64>,
+) -> Vec<Mode> {
     (0..problem.contacts())
         .map(|i| {
             let (lambda, a) = (three(force, i), three(acceleration, i));
-            let zero = |row: usize| ZERO * three(&terms, i).amax() + problem.noise(3 * i + row);
+            let zero = |row: usize| zeros[3 * i + row];
             if lambda.x <= 0.0 && a.x > zero(0) {
                 return Mode::Separate;
             }
@@ -107,7 +133,7 @@ pub(super) const ACCEPTED: f64 = 1e-12;
 const SPARSE: usize = 12;
 
 /// Accelerations up to this part of their terms count as zero.
-const ZERO: f64 = 1e-12;
+pub(super) const ZERO: f64 = 1e-12;
 
 /// The forces in these modes, if they obey the laws.
 pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option<Solution> {
@@ -121,7 +147,7 @@ pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option
         return None;
     }
     let acceleration = problem.w * &force + problem.beta;
-    let modes = modes(problem, &force, &acceleration);
+    let modes = modes(problem, &force, &acceleration, &zeros(problem, &force, ZERO));
     Some(Solution { force, acceleration, modes, certificate, solutions: Solutions::Unknown })
 }
 

@@ -25,6 +25,7 @@ mod enumerate;
 mod linear;
 mod motion;
 mod natural_map;
+mod near;
 mod prescribed;
 mod problem;
 mod solve;

@@ -6,10 +6,11 @@ use nalgebra::DVector;
 
 use super::{
     Mode, Problem, Solution, Unsolved,
-    certified::{attempt, with_certificate},
+    certified::{Refused, attempt, with_certificate},
     edge::beyond,
     enumerate::enumerate,
     motion::centred,
+    near::near,
 };
 
 /// Forces that obey the laws, with modes and a certificate. If all contacts without slip can stick, they do.
@@ -28,7 +29,11 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
     match attempt(problem, guess) {
         Ok(found) if few => Ok(beyond(problem, &found).unwrap_or_else(|| centred(problem, found))),
         Ok(found) => Ok(found),
-        Err(Unsolved::NotFound { violation }) => {
+        Err(Refused { reason: Unsolved::NotFound { violation }, nearest }) => {
+            let nearest = nearest.filter(|_| violation < NEAR);
+            if let Some(found) = nearest.and_then(|nearest| near(problem, &nearest)) {
+                return Ok(found);
+            }
             if let Some(first) = enumerate(problem).into_iter().next() {
                 return Ok(first);
             }
@@ -37,7 +42,7 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
                 None => Unsolved::NotFound { violation },
             })
         }
-        Err(reason) => Err(reason),
+        Err(Refused { reason, .. }) => Err(reason),
     }
 }
 
@@ -62,3 +67,6 @@ fn jammed(problem: &Problem<'_>) -> Option<usize> {
 /// Up to this number of contacts, rest is tried first, and the analytic centre of forces that are not unique
 /// is taken.
 const CENTRED: usize = 48;
+
+/// Forces with a violation below this show which modes are admissible.
+const NEAR: f64 = 1e-6;

@@ -12,7 +12,7 @@ pub struct Contacts {
 }
 
 /// The names of the families.
-pub const FAMILIES: [&str; 4] = ["planted", "body", "flat", "stack"];
+pub const FAMILIES: [&str; 5] = ["planted", "body", "flat", "stack", "chain"];
 
 fn vector(random: &mut Random) -> Vector3<f64> {
     Vector3::new(random.normal(), random.normal(), random.normal())
@@ -30,6 +30,7 @@ pub fn problem(family: &str, k: usize, seed: u64) -> Contacts {
         "planted" => planted(k, &mut random),
         "body" => body(k, true, &mut random),
         "flat" => body(k, false, &mut random),
+        "chain" => chain(k, &mut random),
         _ => stack(k.div_ceil(4), &mut random),
     }
 }
@@ -118,6 +119,53 @@ fn stack(boxes: usize, random: &mut Random) -> Contacts {
         free.extend([push.x, push.y, -9.81, turn.x, turn.y, turn.z]);
     }
     assembled(&partials, &masses, &free, mu)
+}
+
+/// A chain in a plane, nearly straight along the floor: masses at the joints of links of length one, k of which touch the
+/// floor. These can hardly move relative to each other along it. Links between two of them do not turn, others do, so
+/// that the joints pull at each other.
+fn chain(k: usize, random: &mut Random) -> Contacts {
+    let closed: Vec<bool> = std::iter::repeat_with(|| random.unit() < 0.7).take(8 * k).collect();
+    let last = closed.iter().scan(0, |sum, closed| {
+        *sum += usize::from(*closed);
+        Some(*sum)
+    });
+    let joints = last.take_while(|sum| *sum < k).count() + 1;
+    let steep = 10.0_f64.powf(random.between(-12.0, -4.0));
+    let (fast, dofs) = (10.0_f64.powf(random.between(-6.0, 0.0)), joints + 1);
+    let angles: Vec<f64> = (1..joints).map(|_| steep * random.normal()).collect();
+    let turns: Vec<f64> = (1..joints)
+        .map(|link| if closed[link - 1] && closed[link] { 0.0 } else { fast * random.normal() })
+        .collect();
+    // The velocities of joint i, up and along, by those of the first joint and the angular velocities of the links; and
+    // their rates for constant speeds.
+    let (mut up, mut along) = (DMatrix::zeros(joints, dofs), DMatrix::zeros(joints, dofs));
+    let (mut up_rate, mut along_rate) = (DVector::zeros(joints), DVector::zeros(joints));
+    for i in 0..joints {
+        (up[(i, 0)], along[(i, 1)]) = (1.0, 1.0);
+        for link in 0..i {
+            let (sin, cos) = angles[link].sin_cos();
+            (up[(i, 2 + link)], along[(i, 2 + link)]) = (cos, -sin);
+            up_rate[i] -= sin * turns[link] * turns[link];
+            along_rate[i] -= cos * turns[link] * turns[link];
+        }
+    }
+    let masses = DMatrix::from_diagonal(&DVector::from_fn(joints, |_, _| random.between(0.5, 2.0)));
+    let mass = up.tr_mul(&masses) * &up + along.tr_mul(&masses) * &along;
+    let load = -up.tr_mul(&masses) * up_rate.add_scalar(9.81) - along.tr_mul(&masses) * &along_rate;
+    let factors = mass.cholesky().unwrap();
+    let free = factors.solve(&load);
+    let mut partials = DMatrix::zeros(3 * k, dofs);
+    let mut beta = DVector::zeros(3 * k);
+    for (contact, joint) in (0..joints).filter(|&i| closed[i] || i + 1 == joints).take(k).enumerate() {
+        for (row, (velocity, rate)) in [(&up, &up_rate), (&along, &along_rate)].into_iter().enumerate() {
+            partials.row_mut(3 * contact + row).copy_from(&velocity.row(joint));
+            beta[3 * contact + row] = velocity.row(joint).transpose().dot(&free) + rate[joint];
+        }
+    }
+    let w = &partials * factors.solve(&partials.transpose());
+    let w = 0.5 * (&w + w.transpose());
+    Contacts { w, beta, mu: vec![random.between(0.05, 1.0); k], slip: vec![None; k] }
 }
 
 /// The rows of contact `i` at a point of the body whose speeds begin at `column`.
