@@ -1,5 +1,7 @@
 //! The right-hand side of the integration: the rates of the state for constant modes of all contacts.
 
+use std::cell::RefCell;
+
 use hodograph::{ComponentKind, ContactError, State, StateError};
 use nalgebra::{DVector, Vector2};
 
@@ -67,6 +69,8 @@ pub(crate) struct Room {
     mu: Vec<f64>,
     inputs: Vec<f64>,
     numbers: Vec<f64>,
+    /// The forces of the last state, which is nearby; of several contacts.
+    last: Option<DVector<f64>>,
 }
 
 /// The direction of slip that began along `began`: its own direction if slip is larger than the rounding
@@ -130,6 +134,7 @@ impl Motion<'_> {
             mu: Vec::new(),
             inputs: Vec::new(),
             numbers: Vec::new(),
+            last: None,
         }
     }
 
@@ -215,7 +220,7 @@ impl Motion<'_> {
     ) -> Result<Option<Forces>, Failure> {
         let (q, u) = self.split(y);
         let (n, p) = (q.len(), u.len());
-        let Room { support, holds, mu, inputs, numbers } = room;
+        let Room { support, holds, mu, inputs, numbers, last } = room;
         inputs.clear();
         inputs.extend_from_slice(self.held);
         self.drive_inputs(t, y, inputs)?;
@@ -230,10 +235,20 @@ impl Motion<'_> {
                 Lacking::Contact(i, error) => Failure::Contact(self.closed[i].contact, error),
                 Lacking::Common => Failure::NoForces,
             };
-            let solve = |holds: &[Hold]| forces(support, holds, mu, None, Wanted::Motion);
+            // Where forces are not unique, those of a state nearby, or of directions nearby, are next to them.
+            let near = RefCell::new(guess.cloned().or_else(|| last.take()));
+            let several = holds.len() > 1;
+            let solve = |holds: &[Hold]| {
+                let found = forces(support, holds, mu, near.borrow().as_ref(), Wanted::Motion)?;
+                if several {
+                    near.replace(Some(found.lambda.clone()));
+                }
+                Ok(found)
+            };
             settle_directions(support, self.closed, holds, &solve);
             settled_direction::settle(support, self.closed, t, holds, &solve).ok_or(Failure::NoForces)?;
-            let answer = forces(support, holds, mu, guess, wanted).map_err(lacking)?;
+            let answer = forces(support, holds, mu, near.borrow().as_ref(), wanted).map_err(lacking)?;
+            *last = several.then(|| answer.lambda.clone());
             let greatest = answer.lambda.amax();
             let accelerations = &mut rates[n..n + p];
             // The sums of the magnitudes of the terms.

@@ -372,3 +372,103 @@ fn the_models_have_contacts() {
         );
     }
 }
+
+/// The models of these tests, each from random starts near the one that it states, with gaps that are open.
+#[test]
+fn every_model() {
+    let seeds = drops(0..1);
+    let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
+    for name in MODELS {
+        let mechanism = model(name);
+        let began = Instant::now();
+        for &seed in &seeds {
+            let mut random = Random::new(seed ^ 0x5eed_0000);
+            let start = near_stated(&mechanism, &mut random);
+            let law = [Law::Newton, Law::Poisson, Law::Stronge][random.below(3)];
+            let mu = if random.below(8) == 0 { 0.0 } else { random.between(0.05, 1.2) };
+            let e = if random.below(3) == 0 { 0.0 } else { random.between(0.0, 1.0) };
+            let end = follow(&mechanism, &start, surface(mu, e, law), 1.0);
+            *outcomes.entry(end.outcome()).or_insert(0) += 1;
+            let size = end.before.abs().max(1e-3);
+            // By Newton's hypothesis an oblique impact may give energy, and so may a surface that is driven.
+            let may_gain = law == Law::Newton || DRIVEN.contains(&name);
+            let gained = end.gain().filter(|(_, gain)| !may_gain && *gain > 1e-12 * size);
+            if end.error.is_some() || gained.is_some() {
+                let (error, names) = (end.error.as_ref().map(ToString::to_string), end.names());
+                let last = &names[names.len().saturating_sub(3)..];
+                println!("{name} {seed}: mu {mu:.3} e {e:.3} {law:?}: {error:?} {gained:?}, after {last:?}");
+                failures.push((name, seed));
+            }
+        }
+        println!("{name}: {:.1} s", began.elapsed().as_secs_f64());
+    }
+    println!("{outcomes:?}");
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
+/// A surface that is driven.
+const DRIVEN: [&str; 1] = ["truck"];
+
+/// All but those whose gap belongs to their normal only in level positions (`plank_rollers`), and `spin`, which has a test of
+/// its own.
+const MODELS: [&str; 38] = [
+    "a_frame",
+    "ball_in_corner",
+    "box_on_incline",
+    "bracket",
+    "car",
+    "chain10",
+    "chain5",
+    "coin",
+    "compass",
+    "cradle5",
+    "crate",
+    "cubes2",
+    "cylinders3",
+    "domino3",
+    "domino8",
+    "dropped5",
+    "elbow",
+    "euler_disc",
+    "fence",
+    "gripper",
+    "groove_drop",
+    "groove_roll",
+    "guide",
+    "kerb",
+    "ladder",
+    "ladder_man",
+    "pyramid3",
+    "quadruped",
+    "row3",
+    "scissors",
+    "stack10",
+    "table3",
+    "table_edge",
+    "tripod",
+    "truck",
+    "wedge",
+    "wedge_block",
+    "woodpecker",
+];
+
+/// A start whose gaps are open, with coordinates up to 0.3 away from the stated ones; after many trials less far.
+fn near_stated(mechanism: &InterpretedMechanism, random: &mut Random) -> Start {
+    let stated = Start::of(mechanism);
+    for trial in 0..400 {
+        let far = 0.3 * 0.98_f64.powi(trial);
+        let mut start = stated.clone();
+        start.coordinates.iter_mut().for_each(|q| *q += random.between(-far, far));
+        start.speeds.iter_mut().for_each(|u| *u += random.between(-1.0, 1.0));
+        if mechanism.normalise(&mut start.coordinates).is_err() {
+            continue;
+        }
+        let state = start.state();
+        let open = |contact| !matches!(mechanism.gap(contact, &state), Ok(Some(gap)) if gap < 1e-6);
+        if (0..mechanism.count(ComponentKind::Contact)).all(open) && mechanism.kinetic_energy(&state).is_ok()
+        {
+            return start;
+        }
+    }
+    stated
+}

@@ -38,15 +38,16 @@ pub(super) fn centre(
     (decide, by): (bool, By),
 ) -> (DVector<f64>, bool) {
     let project = |x: &DVector<f64>| least + basis * basis.tr_mul(&(x - least));
-    let starts = start.map(project).into_iter().chain([least.clone()]);
+    // Forces of a state nearby are next to the centre, however thin the set is.
+    let starts = start.map(|start| (project(start), NEAR)).into_iter().chain([(least.clone(), START)]);
     let follow_on = |x: DVector<f64>| {
         let x = follow(cones, basis, load, x, by);
         // If the set of allowed forces is thin, the Hessian is inaccurate along it.
         let thin = by == By::Hessian && least_reserve(cones, &x) < THIN * load;
         if thin { follow(cones, basis, load, x, By::Squares) } else { x }
     };
-    for x in starts {
-        if least_reserve(cones, &x) > START * load {
+    for (x, reserve) in starts {
+        if least_reserve(cones, &x) > reserve * load {
             return (follow_on(x), true);
         }
     }
@@ -63,8 +64,10 @@ pub(super) fn centre(
     }
 }
 
-/// A reserve at which the path to the centre may start, relative to the load.
+/// Reserves at which the path to the centre may start, relative to the load: from any forces, and from those of a state
+/// nearby.
 const START: f64 = 1e-3;
+const NEAR: f64 = 1e-6;
 
 /// Reserves below this part of the load have terms in the Hessian beside which the squares of others lose
 /// half of their digits.
