@@ -81,6 +81,13 @@ pub enum ErrorKind {
     /// The gap of a closed contact is not zero, m: the rate of the gap is not the normal velocity of the
     /// contact.
     Drift(f64),
+    /// The gap of a contact that opens has another rate than the velocity of the point along the normal.
+    GapRate {
+        /// the rate of the gap, m/s
+        rate: f64,
+        /// the normal velocity, m/s
+        velocity: f64,
+    },
     /// A normal velocity is smaller than its rounding error, so that it is not known whether the contact
     /// closes or opens.
     Rounding {
@@ -121,6 +128,7 @@ impl ErrorKind {
             Self::NoProgress { .. } => "no_progress",
             Self::Singular => "singular",
             Self::Drift(_) => "drift",
+            Self::GapRate { .. } => "gap_rate",
             Self::Rounding { .. } | Self::GapRounding { .. } => "rounding",
             Self::StruckTogether(_) => "struck_together",
             Self::LzbNotCovered(_) => "lzb_not_covered",
@@ -179,6 +187,10 @@ impl fmt::Display for SimulationError {
             ErrorKind::Drift(gap) => write!(
                 out,
                 "the contact is closed, but its gap is {gap:e} m: the rate of the gap is not the velocity of the point along the normal (a face that ends, or a gap that does not belong to the normal)"
+            ),
+            ErrorKind::GapRate { rate, velocity } => write!(
+                out,
+                "the gap changes at {rate} m/s, but the velocity of the point along the normal is {velocity} m/s: the gap does not belong to the normal, or the surface that is `against` has a velocity along it"
             ),
             ErrorKind::Rounding { velocity, terms } => write!(
                 out,

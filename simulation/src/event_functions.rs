@@ -90,6 +90,12 @@ impl Watched {
     }
 }
 
+/// A gap has another rate than the normal velocity if, over a time below this part of that of the problem, it changes by
+/// this part otherwise, and by this many times its rounding.
+const MOMENT: f64 = 1e-6;
+const OTHER: f64 = 1e-3;
+const MANY: f64 = 100.0;
+
 impl Transition<'_> {
     /// The functions to be monitored over the next time `h`, and bounds of their rounding errors.
     pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
@@ -417,8 +423,13 @@ impl Transition<'_> {
             };
             let (before, _) = self.gap_in(step.t, step.start(), contact)?;
             let (gap, _) = self.gap_at(step, contact)?;
-            let rounding = 4.0 * self.rounding_of_gap(contact);
-            if (gap - before - h * mean).abs() > rounding.max(RISEN * self.front.scales.length) {
+            let rounding = (4.0 * self.rounding_of_gap(contact)).max(RISEN * self.front.scales.length);
+            let off = (gap - before - h * mean).abs();
+            if off > MANY * rounding && off > OTHER * h * mean.abs() && h < MOMENT * self.front.scales.time {
+                let rate = (gap - before) / h;
+                return Err(self.error(Some(contact), ErrorKind::GapRate { rate, velocity: mean }));
+            }
+            if off > rounding {
                 return Ok(false);
             }
         }

@@ -1,6 +1,7 @@
 //! Starts and questions at the edge of what is allowed: none may hang, panic, or give what is not so.
 
 use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
+use crate::many::{Start, follow, model};
 use hodograph::{Cause, Contacts, Law, State, Surface};
 use hodograph_simulation::{ContactPhase, Drive, Options, Progress, Simulation};
 
@@ -316,4 +317,19 @@ fn tolerances_below_rounding_are_refused() {
         let error = Simulation::new(&body, &state, options).unwrap_err();
         assert!(error.to_string().contains("the least is 1e-16"), "{error}");
     }
+}
+
+/// The rollers of this model drive along the horizontal, also where the plank is inclined: its gap has another rate than its
+/// normal velocity there.
+#[test]
+fn a_gap_that_does_not_belong_to_the_normal_is_named() {
+    let plank = model("plank_rollers");
+    let mut start = Start::of(&plank);
+    for (name, value) in [("zb", 0.15), ("qb", -0.2), ("uzb", -0.5)] {
+        start.set(&plank, name, value);
+    }
+    let end = follow(&plank, &start, surface(0.5, 0.3, Law::Stronge), 1.0);
+    let error = end.error.expect("the gap is another one");
+    assert_eq!(error.kind.name(), "gap_rate", "{error}");
+    assert!(error.to_string().contains("does not belong to the normal"), "{error}");
 }
