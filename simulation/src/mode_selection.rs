@@ -130,6 +130,11 @@ fn choose_with(
         return Ok(chosen(problem, &modes, &rest.force));
     }
     let found = contact_problem::solve_without_jam(problem, Some(before));
+    if let Err(Unsolved::NotFound { .. }) = found
+        && let Some((modes, nearly)) = contact_problem::nearly(problem, Some(before))
+    {
+        return Ok(chosen_as(problem, &modes, &nearly.force, Selection::Unknown));
+    }
     let (solution, middle) = found.map_err(|unsolved| match unsolved {
         Unsolved::Jam { contact, .. } => {
             let free_acceleration = support.beta[3 * contact];
@@ -145,6 +150,10 @@ fn choose_with(
 }
 
 fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Choice {
+    chosen_as(problem, modes, force, selection(problem, modes, force))
+}
+
+fn chosen_as(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>, selection: Selection) -> Choice {
     let decision = |(mode, slip): (&Mode, &Option<Vector2<f64>>)| match mode {
         Mode::Separate => Decision::Separate,
         Mode::Stick => Decision::Stick,
@@ -153,7 +162,7 @@ fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Choice
     Choice {
         decisions: modes.iter().zip(problem.slip).map(decision).collect(),
         forces: (0..modes.len()).map(|i| ClosedContacts::three(force, i)).collect(),
-        selection: vec![selection(problem, modes, force); modes.len()],
+        selection: vec![selection; modes.len()],
     }
 }
 

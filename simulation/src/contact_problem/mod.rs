@@ -46,6 +46,7 @@ pub use self::{
 pub(crate) use self::{
     common_slip::slip_together,
     motion::is_slow,
+    near::nearly,
     prescribed::{Wanted, found},
     without_jam::solve_without_jam,
 };

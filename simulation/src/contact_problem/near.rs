@@ -9,10 +9,10 @@
 use nalgebra::{DVector, Vector2};
 
 use super::{
-    Mode, Problem, Solution,
-    certified::{ZERO, modes, with_certificate, zeros},
+    Mode, Problem, Solution, Unsolved,
+    certified::{ZERO, attempt, modes, with_certificate, zeros},
     motion::settle,
-    prescribed::{FITS, with_modes},
+    prescribed::{Admissible, FITS, with_modes},
 };
 
 /// The forces next to these, which violate a law by little.
@@ -22,6 +22,22 @@ pub(super) fn near(problem: &Problem<'_>, force: &DVector<f64>) -> Option<Soluti
         .into_iter()
         .map(|part| modes(problem, force, &acceleration, &zeros(problem, force, part)))
         .find_map(|modes| slipping(problem, modes))
+}
+
+/// Modes and forces that violate the laws by less than the state of a motion is known to, where none were found that obey
+/// them: the motion goes on in these modes until it leaves them.
+pub(crate) fn nearly(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Option<(Vec<Mode>, Admissible)> {
+    let refused = attempt(problem, guess).err()?;
+    let (Unsolved::NotFound { violation }, Some(force)) = (refused.reason, refused.nearest) else {
+        return None;
+    };
+    let acceleration = problem.w * &force + problem.beta;
+    let fits = |part: f64| {
+        let modes = modes(problem, &force, &acceleration, &zeros(problem, &force, part));
+        let found = with_modes(problem, &modes).ok()?;
+        (found.margin >= -NEARLY && found.f > 0.0).then_some((modes, found))
+    };
+    ZEROS.into_iter().filter(|part| (violation..=NEARLY).contains(part)).find_map(fits)
 }
 
 /// The forces of these modes, or of those that follow from what they violate: contacts begin to slip, the fastest first,
@@ -91,3 +107,6 @@ const ROUNDS: usize = 4;
 
 /// The parts of their terms up to which the accelerations that Newton's method leaves may be errors.
 const ZEROS: [f64; 6] = [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6];
+
+/// The violation with which a motion goes on: errors of its state bring accelerations of this part of their terms.
+const NEARLY: f64 = 1e-8;
