@@ -62,9 +62,7 @@ pub(crate) enum Attempt {
     Stuck(Option<Failure>),
 }
 
-/// Number of evaluations of the functions of a step after which it is not bisected any more; with k closed contacts, each of
-/// which makes them more costly, this over 1 + k. Searches that end take up to 7000 of them without contacts, and 2000 with
-/// six.
+/// Number of evaluations of the functions of a step after which it is not bisected any more.
 const LOOKS: usize = 30_000;
 
 impl Transition<'_> {
@@ -309,7 +307,7 @@ impl Transition<'_> {
         // What the user gave and is no number: the error, if no shorter step avoids it.
         let refused = RefCell::new(None);
         for _ in 0..80 {
-            if looks.get() > LOOKS / (1 + closed.len()) {
+            if looks.get() > LOOKS {
                 let modes = self.modes_in_words();
                 return Err(self.error(None, ErrorKind::NoProgress { steps: 1, time: most, modes }));
             }
