@@ -18,10 +18,15 @@ use super::{
 /// The forces next to these, which violate a law by little.
 pub(super) fn near(problem: &Problem<'_>, force: &DVector<f64>) -> Option<Solution> {
     let acceleration = problem.w * force + problem.beta;
-    ZEROS
-        .into_iter()
-        .map(|part| modes(problem, force, &acceleration, &zeros(problem, force, part)))
-        .find_map(|modes| slipping(problem, modes))
+    let mut tried: Vec<Vec<Mode>> = Vec::new();
+    ZEROS.into_iter().find_map(|part| {
+        let modes = modes(problem, force, &acceleration, &zeros(problem, force, part));
+        if tried.contains(&modes) {
+            return None;
+        }
+        tried.push(modes.clone());
+        slipping(problem, modes)
+    })
 }
 
 /// Modes and forces that violate the laws by less than the state of a motion is known to, where none were found that obey
@@ -103,7 +108,7 @@ fn begins(problem: &Problem<'_>, modes: &[Mode], i: usize) -> bool {
 const SAME: f64 = 4.0;
 
 /// Rounds for each contact.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 2;
 
 /// The parts of their terms up to which the accelerations that Newton's method leaves may be errors.
 const ZEROS: [f64; 6] = [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6];
