@@ -252,9 +252,12 @@ async function begin() {
   });
   byId("equations").addEventListener("click", async () => {
     const answer = await words.ask({ ...editor.asked(0), ask: "equations", derivation }, { limit: 8000 });
-    if (!answer?.page) return say(answer?.fault || "no equations", "warning");
-    const frame = byId("equations-frame");
-    frame.srcdoc = answer.page;
+    // In the dialog: the line of status belongs to the motion, which may say something at any time.
+    const [frame, said] = [byId("equations-frame"), byId("equations-said")];
+    frame.srcdoc = answer?.page || "";
+    frame.hidden = !answer?.page;
+    said.textContent = answer?.page ? "" : answer?.fault || "the equations were not computed: ask again";
+    said.hidden = !!answer?.page;
     byId("equations-box").showModal();
   });
   byId("close").addEventListener("click", () => byId("equations-box").close());

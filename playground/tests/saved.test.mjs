@@ -173,7 +173,8 @@ test("equations are those of the tool, and are not offered without a derivation"
   assert.notEqual(changed, await text(page));
   await put(page, changed);
   await page.click("#equations");
-  await page.waitForFunction(() => /the derivation .*hodograph derive/.test(document.querySelector("#status").textContent), { timeout: 20_000 });
-  assert.equal(await page.$eval("#equations-box", (node) => node.open), false);
+  await page.waitForFunction(() => document.querySelector("#equations-box").open);
+  assert.match(await page.$eval("#equations-said", (node) => node.checkVisibility() && node.textContent), /the derivation .*hodograph derive/);
+  assert.equal(await page.$eval("#equations-frame", (node) => node.checkVisibility() || node.srcdoc), "");
   await page.close();
 });
