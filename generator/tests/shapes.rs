@@ -460,6 +460,188 @@ fn capsules_on_capsules() {
     assert!(said(&m, &state).is_none());
 }
 
+/// Whether a segment passes through a box: clipped by its three pairs of faces something is left.
+fn pierces([c, a]: [V; 2], h: f64, half: V) -> bool {
+    let (mut from, mut to) = (-h, h);
+    for i in 0..3 {
+        let mut at = [(-half[i] - c[i]) / a[i], (half[i] - c[i]) / a[i]];
+        at.sort_by(f64::total_cmp);
+        from = at[0].max(from);
+        to = at[1].min(to);
+    }
+    from < to
+}
+
+/// The nearest points of a segment and a box about the origin: of the ends with the box, and of the segment with each
+/// edge; with the square of the sine of the angle that tells how well they are known.
+fn of_segment_and_box([c, a]: [V; 2], h: f64, half: V) -> (V, V, f64) {
+    let mut pairs: Vec<(V, V, f64)> = Vec::new();
+    for sign in [-1.0, 1.0] {
+        let end = plus(c, a, sign * h);
+        pairs.push((end, [0, 1, 2].map(|i| end[i].clamp(-half[i], half[i])), 1.0));
+    }
+    for i in 0..3 {
+        for number in 0..4 {
+            let mut middle = [0.0; 3];
+            for (bit, axis) in [(i + 1) % 3, (i + 2) % 3].into_iter().enumerate() {
+                middle[axis] = if number >> bit & 1 == 0 { half[axis] } else { -half[axis] };
+            }
+            let along = [0, 1, 2].map(|k| f64::from(u8::from(k == i)));
+            pairs.push(of_segments([c, a], h, [middle, along], half[i]));
+        }
+    }
+    let distance = |(p, q, _): &(V, V, f64)| norm3(sub3(*p, *q));
+    pairs.into_iter().min_by(|one, other| distance(one).total_cmp(&distance(other))).unwrap()
+}
+
+/// The contact with the least gap of those that are valid: elsewhere a gap is only positive.
+fn nearest_valid(m: &Mechanism, state: &State, found: &[Said]) -> usize {
+    let values = evaluator(m, state, still(state));
+    let is_valid = |contact: &Contact| {
+        contact.validity.as_ref().is_none_or(|of| values.scalar(of, Level::Geometry).unwrap().re >= 0.0)
+    };
+    let valid = (0..found.len()).filter(|&i| is_valid(&m.contacts[i]));
+    valid.min_by(|a, b| found[*a].gap.total_cmp(&found[*b].gap)).unwrap()
+}
+
+/// Of all contacts of a capsule with a box the nearest tells the distance; each that is valid has a gap whose rate is the
+/// normal velocity.
+#[test]
+fn capsules_on_boxes() {
+    let shapes = "S { of: A, capsule: [k, 10*k], axis: E.x }, T { of: B, box: [4*k, 6*k, 8*k] }";
+    let m = model(shapes, "S on T");
+    assert_eq!(m.contacts.len(), 16);
+    let half = [0.2, 0.3, 0.4];
+    let mut random = Random::named("capsule on box");
+    let (mut worst, mut worst_rate) = (0.0_f64, 0.0_f64);
+    // poses in which the nearest contact is of an end, an edge and a vertex
+    let mut seen = [0; 3];
+    while seen.iter().sum::<usize>() < POSES {
+        let state = random_state(&mut random, &m);
+        let pose = pose(&m, &state);
+        let segment = [
+            along(sub3(pose.at[0], pose.at[1]), &pose.axes[1]),
+            along(pose.axes[0][0], &pose.axes[1]),
+        ];
+        if pierces(segment, 0.5, half) {
+            continue;
+        }
+        let (p, q, apart) = of_segment_and_box(segment, 0.5, half);
+        let distance = norm3(sub3(p, q));
+        let found = said(&m, &state).unwrap();
+        // bodies that overlap are refused, and are known by a contact that is
+        assert_eq!(distance > 0.1, found.iter().all(|one| one.gap > 0.0), "{state:?}");
+        if distance < 0.1 {
+            continue;
+        }
+        let nearest = nearest_valid(&m, &state, &found);
+        let kind = usize::from(nearest >= 2) + usize::from(nearest >= 8);
+        seen[kind] += 1;
+        worst = worst.max((found[nearest].gap - (distance - 0.1)).abs());
+        let n = back(scaled(sub3(p, q), 1.0 / distance), &pose.axes[1]);
+        let on = plus(plus(pose.at[1], back(p, &pose.axes[1]), 1.0), n, -0.1);
+        let known = distance * apart.min(1.0);
+        worst = worst.max(norm3(sub3(found[nearest].normal, n)) * known);
+        worst = worst.max(norm3(sub3(found[nearest].point, on)) * known);
+        let views = Views::at(&m, &state).unwrap();
+        let scale = 1.0 + state.speeds.iter().fold(0.0_f64, |s, u| s.max(u.abs()));
+        for (contact, one) in m.contacts.iter().zip(&found) {
+            let scalar = |of: &Option<_>| of.as_ref().map(|of| views.now.scalar(of, Level::Geometry).unwrap());
+            if scalar(&contact.validity).is_some_and(|validity| validity.re < 1e-9) {
+                continue;
+            }
+            // one that is valid is no nearer than the nearest
+            assert!(one.gap >= distance - 0.1 - 1e-12, "{state:?}");
+            let rate = scalar(&contact.gap).unwrap().e1;
+            let velocity = views.now.contact_velocity(contact).unwrap().map(|c| c.re);
+            let off = (rate - dot3(velocity, one.normal)).abs() / scale;
+            worst_rate = worst_rate.max(off * known.min(1.0));
+        }
+    }
+    println!("{seen:?}: {worst:.1e} beside nearest points, {worst_rate:.1e} of rates");
+    assert!(worst < 1e-12 && worst_rate < 1e-12, "{worst:e} {worst_rate:e}");
+    assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
+}
+
+/// A capsule that lies flat on a face and beyond both of its edges has a contact at each, also where it is tilted by
+/// rounding; along an edge it has one at each vertex, or at each end.
+#[test]
+fn capsules_that_lie_on_boxes_are_carried_at_both_ends() {
+    let shapes = "S { of: A, capsule: [k, 10*k], axis: E.x }, T { of: B, box: [4*k, 6*k, 8*k] }";
+    let m = model(shapes, "S on T");
+    let mut state = State::of(&m);
+    let mut carried = |x: f64, y: f64, z: f64, turned: f64, tilt: f64| {
+        state.coordinates.iter_mut().for_each(|q| *q = 0.0);
+        // the capsule's axis is turned about z, then tilted
+        (state.coordinates[0], state.coordinates[1], state.coordinates[2]) = (x, y, z);
+        (state.coordinates[4], state.coordinates[5]) = (tilt, turned);
+        // the middle of the box is at the origin
+        let found = said(&m, &state).unwrap();
+        let near = found.iter().filter(|one| one.gap.abs() < 1e-12);
+        let mut places: Vec<[i64; 2]> =
+            near.map(|one| [0, 1].map(|i| (one.point[i] * 1e6).round() as i64)).collect();
+        places.sort_unstable();
+        places.dedup();
+        places
+    };
+    for tilt in [0.0, 1e-15, -1e-15] {
+        // over both edges along y, 0.4 apart
+        assert_eq!(carried(0.0, 0.1, 0.5, 0.0, tilt), [[-200_000, 100_000], [200_000, 100_000]]);
+        // one end on the face, the other beyond it
+        assert_eq!(carried(0.4, 0.1, 0.5, 0.0, tilt), [[-100_000, 100_000], [200_000, 100_000]]);
+        // on an edge along x
+        assert_eq!(carried(0.0, 0.3, 0.5, 0.0, tilt), [[-200_000, 300_000], [200_000, 300_000]]);
+        assert_eq!(carried(0.4, 0.3, 0.5, 0.0, tilt), [[-100_000, 300_000], [200_000, 300_000]]);
+    }
+    // diagonally over two vertices
+    let turned = 1.5_f64.atan();
+    assert_eq!(carried(0.0, 0.0, 0.5, turned, 0.0), [[-200_000, -300_000], [200_000, 300_000]]);
+}
+
+/// In a plane of motion: the same distance as from a box that is long across it.
+#[test]
+fn capsules_on_rectangles() {
+    let text = |solid: &str| {
+        format!(
+            "mechanism Flat;
+parameters {{ m: kg = 1, J: kg*m^2 = 0.1, k: m = 0.1 }}
+coordinates {{ x: m, y: m = 5, q: rad }}
+speeds {{ u: m/s, v: m/s, w: rad/s }}
+frames {{ E = N.rotate(z, q); }}
+points {{ G = O + x*N.x + y*N.y; }}
+bodies {{ A {{ frame: E, centre: G, mass: m, inertia: [J, J, J] }} }}
+shapes {{ S {{ of: A, capsule: [k, 10*k], axis: E.x }}, T {{ {solid} }} }}
+kinematics {{ d(x)/dt = u; d(y)/dt = v; d(q)/dt = w; }}
+contacts {{ touch {{ S on T }} }}
+"
+        )
+    };
+    let read = |solid: &str| {
+        let source = Source::file("flat.mech", text(solid));
+        let checked = check(&source);
+        let said = render(&checked.diagnostics, &source);
+        checked.mechanism.unwrap_or_else(|| panic!("{said}"))
+    };
+    let (flat, long) = (read("rectangle: [4*k, 6*k]"), read("box: [4*k, 6*k, 80*k]"));
+    assert_eq!(flat.contacts.len(), 4);
+    let mut random = Random::named("capsule on rectangle");
+    let (mut worst, mut seen) = (0.0_f64, [0; 2]);
+    for _ in 0..POSES {
+        let state = random_state(&mut random, &flat);
+        let [Some(one), Some(other)] = [said(&flat, &state), said(&long, &state)] else { continue };
+        let (a, b) = (nearest_valid(&flat, &state, &one), nearest_valid(&long, &state, &other));
+        assert_eq!(one[a].gap > 0.0, other[b].gap > 0.0, "{state:?}");
+        if other[b].gap < 0.0 {
+            continue;
+        }
+        seen[usize::from(a >= 2)] += 1;
+        worst = worst.max((one[a].gap - other[b].gap).abs());
+        worst = worst.max(norm3(sub3(one[a].normal, other[b].normal)) * (other[b].gap + 0.1));
+    }
+    println!("{seen:?}: {worst:.1e}");
+    assert!(worst < 1e-12 && seen.iter().all(|&count| count > 500), "{seen:?} {worst:e}");
+}
+
 #[test]
 fn spheres_within_solids() {
     let solids = [

@@ -60,6 +60,9 @@ pub fn contacts((striking, vertices): (Kind, usize), inside: bool, struck: Kind)
         (Box, Box, false) => Some(8 + 8 + 9 * 4),
         (Polytope, Plane | HalfSpace | Surface | Curve, false) => Some(vertices),
         (Capsule, Capsule, false) => Some(1),
+        // its ends, and places between them at edges and vertices
+        (Capsule, Box, false) => Some(2 + 3 * 2 + 8),
+        (Capsule, Rectangle, false) => Some(2 + 2),
         (Sphere, Sphere | Capsule | Cylinder | Box | Rectangle | Disc | Torus, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder, true) => Some(1),
         (Sphere, Box, true) => Some(6),

@@ -30,6 +30,21 @@ pub fn less(a: Scalar, b: Scalar) -> Scalar {
     sum([a, Scalar::Neg(Box::new(b))])
 }
 
+/// -a
+pub fn opposite_of(a: Scalar) -> Scalar {
+    Scalar::Neg(Box::new(a))
+}
+
+/// a, or -a.
+pub fn signed(sign: i64, a: Scalar) -> Scalar {
+    if sign < 0 { opposite_of(a) } else { a }
+}
+
+/// The sum of any number of terms.
+pub fn all(terms: impl IntoIterator<Item = Scalar>) -> Scalar {
+    Scalar::Add(terms.into_iter().collect())
+}
+
 /// a^2
 pub fn square(a: Scalar) -> Scalar {
     Scalar::Pow(Box::new(a), Box::new(integer(2)))

@@ -5,87 +5,36 @@
 //! d. They are definitions without a name in the model, which all contacts of a pair share.
 
 use super::algebra::*;
-use super::faces::{OVERLAPS, gap_of, greatest, opposite_of};
+use super::faces::{OVERLAPS, gap_of, greatest};
 use super::features::{Touch, axes_of};
-use crate::model::mechanism::{
-    Anchor, Definition, DefinitionId, DefinitionValue, FrameId, Scalar, Shape, Vector,
-};
+use super::separation::*;
+use super::shared::Shared;
+use crate::model::mechanism::{Anchor, Definition, FrameId, Scalar, Shape, Vector};
 use crate::span::Span;
 
 /// The number of contacts of two boxes: 8 vertices of each, and four pairs of edges for each of the 9 pairs of axes.
 pub const CONTACTS: usize = 8 + 8 + 9 * 4;
 
-/// Shares of the extent of both boxes: by how much a vertex may be beyond the end of a face, and by how much the
-/// crossing of two edges must be within both, and a vertex of the second box from a corner of the first.
-const REACH: (i64, i64) = (4, 1_000_000_000);
-const WITHIN: (i64, i64) = (1, 1_000_000_000);
-/// By how much the boxes must overlap across a face, and by how much the height of a crossing may be less than the
-/// distance of the boxes.
-const OVERLAP: (i64, i64) = (8, 1_000_000_000);
-/// Edges whose angle has a sine below this are parallel: the vertices at their ends touch instead.
-const PARALLEL: (i64, i64) = (1, 1_000_000);
 /// Below this square a sine is zero, so that its root has a derivative.
 const NO_ANGLE: (i64, i64) = (1, 1_000_000_000_000_000_000);
 
 /// The contacts: vertices of the first box on the second, those of the second on the first, and edges on edges.
 pub fn between(first: &Shape, second: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
-    let pair = BoxPair::of(first, second, definitions, at);
-    let mut touches: Vec<Touch> = corner_signs().map(|signs| pair.strikes(&signs, definitions)).collect();
-    touches.extend(corner_signs().map(|signs| pair.is_struck(&signs, definitions)));
+    let mut shared = Shared { definitions, shapes: [first, second], at };
+    let pair = BoxPair::of(first, second, &mut shared);
+    let mut touches: Vec<Touch> = corner_signs().map(|signs| pair.strikes(&signs, &mut shared)).collect();
+    touches.extend(corner_signs().map(|signs| pair.is_struck(&signs, &mut shared)));
     for (i, j) in pairs_of_axes() {
         for parities in [[1, 1], [1, -1], [-1, 1], [-1, -1]] {
-            touches.push(pair.crosses(i, j, parities, definitions));
+            touches.push(pair.crosses(i, j, parities, &mut shared));
         }
     }
     debug_assert_eq!(touches.len(), CONTACTS);
     touches
 }
 
-/// On which side of the middle a vertex is, along each axis, in the order of [`super::features::corners`].
-fn corner_signs() -> impl Iterator<Item = [i64; 3]> {
-    (0..8).map(|number| [0, 1, 2].map(|i| if number >> i & 1 == 0 { 1 } else { -1 }))
-}
-
 fn pairs_of_axes() -> impl Iterator<Item = (usize, usize)> {
     (0..3).flat_map(|i| (0..3).map(move |j| (i, j)))
-}
-
-/// The two other axes, so that all three are right-handed.
-fn others(i: usize) -> [usize; 2] {
-    [(i + 1) % 3, (i + 2) % 3]
-}
-
-/// a, or -a.
-fn signed(sign: i64, a: Scalar) -> Scalar {
-    if sign < 0 { opposite_of(a) } else { a }
-}
-
-fn all(terms: impl IntoIterator<Item = Scalar>) -> Scalar {
-    Scalar::Add(terms.into_iter().collect())
-}
-
-/// Positive where edges are not parallel; of such that are it is minus the extent.
-fn crossed(squared_sine: Scalar, extent: &Scalar) -> Scalar {
-    let parallel = square(ratio(PARALLEL.1, PARALLEL.0));
-    product([less(product([parallel, squared_sine]), integer(1)), extent.clone()])
-}
-
-fn least(bounds: Vec<Scalar>) -> Scalar {
-    bounds.into_iter().reduce(lesser).unwrap_or_else(|| integer(1))
-}
-
-/// Gives an expression to all that use it.
-fn shared(value: Scalar, what: &str, at: Span, definitions: &mut Vec<Definition>) -> Scalar {
-    Scalar::Definition(keep(DefinitionValue::Scalar(value), what, at, definitions))
-}
-
-fn shared_vector(value: Vector, what: &str, at: Span, definitions: &mut Vec<Definition>) -> Vector {
-    Vector::Definition(keep(DefinitionValue::Vector(value), what, at, definitions))
-}
-
-fn keep(value: DefinitionValue, what: &str, span: Span, definitions: &mut Vec<Definition>) -> DefinitionId {
-    definitions.push(Definition { name: what.to_owned(), docs: String::new(), value, span });
-    DefinitionId(definitions.len() - 1)
 }
 
 /// One of two boxes, as the vertices of the other see it.
@@ -139,23 +88,22 @@ struct BoxPair<'s> {
 }
 
 impl<'s> BoxPair<'s> {
-    fn of(first: &'s Shape, second: &'s Shape, definitions: &mut Vec<Definition>, at: Span) -> BoxPair<'s> {
+    fn of(first: &'s Shape, second: &'s Shape, shared: &mut Shared<'_>) -> BoxPair<'s> {
         let shapes = [first, second];
-        let name = |what: &str| format!("{what} of `{}` and `{}`", first.name, second.name);
+        let at = shared.at;
         let axes = shapes.map(axes_of);
         let frames = shapes.map(|shape| shape.axes.unwrap_or(shape.frame));
         let half = shapes.map(|shape| [0, 1, 2].map(|i| shape.sizes.get(i).map_or(integer(0), half)));
-        let mut share = |value: Scalar, what: &str| shared(value, &name(what), at, definitions);
-        let extent = share(all(half.iter().flatten().cloned()), "extent");
+        let extent = shared.scalar(all(half.iter().flatten().cloned()), "extent");
         let d = first.at.from(&second.at);
         let cosines: [[Scalar; 3]; 3] =
-            std::array::from_fn(|i| std::array::from_fn(|j| share(dot(&axes[0][i], &axes[1][j]), "cosine")));
+            std::array::from_fn(|i| std::array::from_fn(|j| shared.scalar(dot(&axes[0][i], &axes[1][j]), "cosine")));
         let sizes: [[Scalar; 3]; 3] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| share(size(cosines[i][j].clone()), "size of a cosine"))
+            std::array::from_fn(|j| shared.scalar(size(cosines[i][j].clone()), "size of a cosine"))
         });
         let along: [[Scalar; 3]; 2] = [0, 1].map(|body| {
             let axes: &[Vector; 3] = &axes[body];
-            [0, 1, 2].map(|i| share(dot(&d, &axes[i]), "distance of the middles"))
+            [0, 1, 2].map(|i| shared.scalar(dot(&d, &axes[i]), "distance of the middles"))
         });
         // how far the boxes are apart along the axes of each
         let faces = [0, 1].map(|body| {
@@ -165,7 +113,7 @@ impl<'s> BoxPair<'s> {
                     product([half[1 - body][j].clone(), of_both.clone()])
                 });
                 let reach = all(std::iter::once(half[body][i].clone()).chain(reach));
-                share(less(size(along[body][i].clone()), reach), "distance along an axis")
+                shared.scalar(less(size(along[body][i].clone()), reach), "distance along an axis")
             })
         });
         // and along the products of their axes; a x b has the components -c_lj and c_kj along the first's
@@ -177,16 +125,16 @@ impl<'s> BoxPair<'s> {
         for (i, j) in pairs_of_axes() {
             let ([k, l], [m, o]) = (others(i), others(j));
             let c = |a: usize, b: usize| cosines[a][b].clone();
-            let square_of = share(all([square(c(k, j)), square(c(l, j))]), "squared sine");
-            let sine = share(
+            let square_of = shared.scalar(all([square(c(k, j)), square(c(l, j))]), "squared sine");
+            let sine = shared.scalar(
                 root(greater(square_of.clone(), square(ratio(PARALLEL.0, PARALLEL.1)))),
                 "sine of edges that are not parallel",
             );
             let angle =
-                share(root(greater(square_of.clone(), ratio(NO_ANGLE.0, NO_ANGLE.1))), "sine of edges");
+                shared.scalar(root(greater(square_of.clone(), ratio(NO_ANGLE.0, NO_ANGLE.1))), "sine of edges");
             sines[0][i].push(angle.clone());
             sines[1][j].push(angle);
-            let apart = share(
+            let apart = shared.scalar(
                 less(product([along[0][l].clone(), c(k, j)]), product([along[0][k].clone(), c(l, j)])),
                 "distance of the middles across edges",
             );
@@ -197,32 +145,19 @@ impl<'s> BoxPair<'s> {
                 product([half[1][o].clone(), sizes[i][m].clone()]),
             ]);
             let distance = quotient(less(size(apart.clone()), reach), sine.clone(), at);
-            let distance = share(distance, "distance across edges");
-            let crossed = share(crossed(square_of.clone(), &extent), "whether edges are not parallel");
+            let distance = shared.scalar(distance, "distance across edges");
+            let crossed = shared.scalar(crossed(square_of.clone(), &extent), "whether edges are not parallel");
             known.push(lesser(distance.clone(), crossed));
             distances.push(distance);
-            let turned = share(sign(apart.clone()), "side of edges");
+            let turned = shared.scalar(sign(apart.clone()), "side of edges");
             let way = |sign_of: i64, c: Scalar| signed(sign_of, product([turned.clone(), sign(c)]));
-            let mut nearest = |support: [Scalar; 2], components: [&Scalar; 2]| {
-                let steeper = share(
-                    sign(less(components[0].clone(), components[1].clone())),
-                    "which component across edges is greater",
-                );
-                let lead = all([
-                    product([step(steeper.clone()), support[0].clone()]),
-                    product([less(integer(1), step(steeper.clone())), support[1].clone()]),
-                ]);
-                let lead = share(lead, "side of the nearest edge");
-                let other = share(product([lead.clone(), steeper]), "side of the edge beside it");
-                [[lead.clone(), lead], [other.clone(), opposite_of(other)]]
-            };
-            let of_first = nearest([way(1, c(l, j)), way(-1, c(k, j))], [&sizes[l][j], &sizes[k][j]]);
-            let of_second = nearest([way(1, c(i, o)), way(-1, c(i, m))], [&sizes[i][o], &sizes[i][m]]);
+            let of_first = nearest_edges([way(1, c(l, j)), way(-1, c(k, j))], [&sizes[l][j], &sizes[k][j]], shared);
+            let of_second = nearest_edges([way(1, c(i, o)), way(-1, c(i, m))], [&sizes[i][o], &sizes[i][m]], shared);
             let part =
                 |sign: i64, c: Scalar| quotient(signed(sign, product([turned.clone(), c])), sine.clone(), at);
             let mut components = [integer(0), integer(0), integer(0)];
-            components[k] = share(part(-1, c(l, j)), "normal of edges");
-            components[l] = share(part(1, c(k, j)), "normal of edges");
+            components[k] = shared.scalar(part(-1, c(l, j)), "normal of edges");
+            components[l] = shared.scalar(part(1, c(k, j)), "normal of edges");
             let normal = Vector::Components(frames[0], Box::new(components));
             edges.push(Edges {
                 square: square_of,
@@ -234,28 +169,28 @@ impl<'s> BoxPair<'s> {
             });
         }
         let distance = distances.into_iter().reduce(greater).unwrap_or_else(|| integer(0));
-        let distance = share(distance, "distance of the boxes");
+        let distance = shared.scalar(distance, "distance of the boxes");
         let overlap = known.into_iter().reduce(greater).unwrap_or_else(|| integer(0));
-        let overlap = share(overlap, "distance of the boxes across edges that are not parallel");
+        let overlap = shared.scalar(overlap, "distance of the boxes across edges that are not parallel");
         let boxes = [0, 1].map(|body| {
             let other_way = |a: &Scalar| if body == 0 { opposite_of(a.clone()) } else { a.clone() };
             let away = [0, 1, 2].map(|i| other_way(&along[body][i]));
-            let sides = [0, 1, 2].map(|i| share(sign(away[i].clone()), "side of a face"));
+            let sides = [0, 1, 2].map(|i| shared.scalar(sign(away[i].clone()), "side of a face"));
             let across: Vec<Scalar> = greatest(&faces[body])
                 .into_iter()
-                .map(|chosen| share(chosen, "whether a face is nearest"))
+                .map(|chosen| shared.scalar(chosen, "whether a face is nearest"))
                 .collect();
             let across: [Scalar; 3] = std::array::from_fn(|i| across[i].clone());
             let slack = [0, 1, 2].map(|i| {
-                let angle = share(
+                let angle = shared.scalar(
                     sines[body][i].iter().cloned().reduce(lesser).unwrap_or_else(|| integer(1)),
                     "least angle of an edge",
                 );
                 let is_parallel = step(less(ratio(PARALLEL.0, PARALLEL.1), angle.clone()));
-                share(product([is_parallel, angle, extent.clone()]), "reach of parallel edges")
+                shared.scalar(product([is_parallel, angle, extent.clone()]), "reach of parallel edges")
             });
             let out =
-                [0, 1, 2].map(|i| share(product([across[i].clone(), sides[i].clone()]), "normal of a face"));
+                [0, 1, 2].map(|i| shared.scalar(product([across[i].clone(), sides[i].clone()]), "normal of a face"));
             let turned = [across[2].clone(), across[0].clone(), across[1].clone()];
             Side {
                 frame: frames[body],
@@ -270,14 +205,14 @@ impl<'s> BoxPair<'s> {
             }
         });
         let boxes = boxes.map(|side| {
-            let outward = shared_vector(side.outward, &name("normal of the nearest face"), at, definitions);
-            let tangent = shared_vector(side.tangent, &name("tangent of the nearest face"), at, definitions);
+            let outward = shared.vector(side.outward, "normal of the nearest face");
+            let tangent = shared.vector(side.tangent, "tangent of the nearest face");
             Side { outward, tangent, ..side }
         });
         let edges = edges
             .into_iter()
             .map(|edges| {
-                let normal = shared_vector(edges.normal, &name("normal of edges"), at, definitions);
+                let normal = shared.vector(edges.normal, "normal of edges");
                 Edges { normal, ..edges }
             })
             .collect();
@@ -288,13 +223,8 @@ impl<'s> BoxPair<'s> {
         product([ratio(n, d), self.extent.clone()])
     }
 
-    fn named(&self, value: Scalar, what: &str, definitions: &mut Vec<Definition>) -> Scalar {
-        let name = format!("{what} of `{}` and `{}`", self.shapes[0].name, self.shapes[1].name);
-        shared(value, &name, self.at, definitions)
-    }
-
     /// The place of a vertex of a box from the middle of the other, along the axes of the other.
-    fn places(&self, body: usize, signs: &[i64; 3], definitions: &mut Vec<Definition>) -> [Scalar; 3] {
+    fn places(&self, body: usize, signs: &[i64; 3], shared: &mut Shared<'_>) -> [Scalar; 3] {
         let (own, other) = (&self.boxes[body], &self.boxes[1 - body]);
         [0, 1, 2].map(|j| {
             let shares = (0..3).map(|i| {
@@ -302,7 +232,7 @@ impl<'s> BoxPair<'s> {
                 signed(signs[i], product([own.half[i].clone(), cosine.clone()]))
             });
             let place = all(std::iter::once(other.away[j].clone()).chain(shares));
-            self.named(place, "place of a vertex", definitions)
+            shared.scalar(place, "place of a vertex")
         })
     }
 
@@ -314,15 +244,15 @@ impl<'s> BoxPair<'s> {
     }
 
     /// Height and validity of a vertex of a box over the face of the other that is nearest.
-    fn over(&self, body: usize, places: &[Scalar; 3], definitions: &mut Vec<Definition>) -> (Scalar, Scalar) {
+    fn over(&self, body: usize, places: &[Scalar; 3], shared: &mut Shared<'_>) -> (Scalar, Scalar) {
         let other = &self.boxes[1 - body];
         let beyond = [0, 1, 2].map(|i| {
             let beyond = less(size(places[i].clone()), other.half[i].clone());
-            self.named(beyond, "place beyond a face", definitions)
+            shared.scalar(beyond, "place beyond a face")
         });
         let above = [0, 1, 2].map(|i| {
             let above = product([other.across[i].clone(), other.sides[i].clone(), places[i].clone()]);
-            self.named(above, "place over a face", definitions)
+            shared.scalar(above, "place over a face")
         });
         let height =
             all((0..3)
@@ -356,24 +286,24 @@ impl<'s> BoxPair<'s> {
     }
 
     /// The contact of a vertex of the first box.
-    fn strikes(&self, signs: &[i64; 3], definitions: &mut Vec<Definition>) -> Touch {
-        let places = self.places(0, signs, definitions);
-        let known = self.over(0, &places, definitions);
+    fn strikes(&self, signs: &[i64; 3], shared: &mut Shared<'_>) -> Touch {
+        let places = self.places(0, signs, shared);
+        let known = self.over(0, &places, shared);
         let face = &self.boxes[1];
-        self.touch(self.vertex(0, signs), (face.outward.clone(), &face.tangent), known, definitions)
+        self.touch(self.vertex(0, signs), (face.outward.clone(), &face.tangent), known, shared)
     }
 
     /// The contact of a vertex of the second box: with the matter of the first that is there.
-    fn is_struck(&self, signs: &[i64; 3], definitions: &mut Vec<Definition>) -> Touch {
-        let places = self.places(1, signs, definitions);
-        let known = self.over(1, &places, definitions);
+    fn is_struck(&self, signs: &[i64; 3], shared: &mut Shared<'_>) -> Touch {
+        let places = self.places(1, signs, shared);
+        let known = self.over(1, &places, shared);
         let face = &self.boxes[0];
         let there = self.shapes[0].at.plus(Vector::Components(face.frame, Box::new(places)));
-        self.touch(there, (opposite(&face.outward), &face.tangent), known, definitions)
+        self.touch(there, (opposite(&face.outward), &face.tangent), known, shared)
     }
 
     /// The contact of an edge of each box, along these axes.
-    fn crosses(&self, i: usize, j: usize, parities: [i64; 2], definitions: &mut Vec<Definition>) -> Touch {
+    fn crosses(&self, i: usize, j: usize, parities: [i64; 2], shared: &mut Shared<'_>) -> Touch {
         let edges = &self.edges[3 * i + j];
         let ([k, l], [m, o]) = (others(i), others(j));
         let [first, second] = &self.boxes;
@@ -393,7 +323,7 @@ impl<'s> BoxPair<'s> {
             product([to_o.clone(), c(i, m)]),
         ]);
         let height = quotient(product([edges.turned.clone(), across]), edges.sine.clone(), self.at);
-        let height = self.named(height, "height of edges", definitions);
+        let height = shared.scalar(height, "height of edges");
         let along_second = |own: &Scalar, q: usize| {
             let away = second.away[q].clone();
             let shares = [product([to_k.clone(), c(k, q)]), product([to_l.clone(), c(l, q)])];
@@ -410,7 +340,7 @@ impl<'s> BoxPair<'s> {
             product([c(i, o), along_second(&to_o, o)]),
         ]));
         let u = all([product([c(k, j), along_first(&to_k, k)]), product([c(l, j), along_first(&to_l, l)])]);
-        let t = self.named(quotient(t, divisor.clone(), self.at), "place on an edge", definitions);
+        let t = shared.scalar(quotient(t, divisor.clone(), self.at), "place on an edge");
         let u = quotient(u, divisor, self.at);
         let within = |half: &Scalar, place: Scalar| less(less(half.clone(), size(place)), self.share(WITHIN));
         let crossed = crossed(edges.square.clone(), &self.extent);
@@ -424,7 +354,7 @@ impl<'s> BoxPair<'s> {
         (components[i], components[k], components[l]) = (t, to_k, to_l);
         let point = self.shapes[0].at.plus(Vector::Components(first.frame, Box::new(components)));
         let tangent = axis(first.frame, i);
-        self.touch(point, (edges.normal.clone(), &tangent), (height, validity), definitions)
+        self.touch(point, (edges.normal.clone(), &tangent), (height, validity), shared)
     }
 
     /// A contact; where it is none, its gap is how far it is from that.
@@ -433,9 +363,9 @@ impl<'s> BoxPair<'s> {
         point: Anchor,
         (normal, tangent): (Vector, &Vector),
         (height, validity): (Scalar, Scalar),
-        definitions: &mut Vec<Definition>,
+        shared: &mut Shared<'_>,
     ) -> Touch {
-        let validity = self.named(validity, "validity of a contact", definitions);
+        let validity = shared.scalar(validity, "validity of a contact");
         let apart = all([self.overlap.clone(), self.share(OVERLAPS)]);
         let gap = gap_of(height, opposite_of(validity.clone()), apart);
         Touch { point, normal, gap, validity: Some(validity), tangent: Some(tangent.clone()) }

@@ -7,6 +7,7 @@ use super::super::super::names::Symbol;
 use super::super::super::pairs::{self, Pair};
 use super::super::Lowering;
 use super::boxes;
+use super::capsule_on_box;
 use super::closed_forms::touches;
 use super::features::Touch;
 use crate::diagnostics::{Diagnostic, codes};
@@ -113,10 +114,13 @@ impl Lowering<'_> {
             self.report(error.help("state its position"));
             return None;
         }
-        let both_are_boxes = [striking, struck].iter().all(|shape| shape.kind == Kind::Box);
-        let touches = match both_are_boxes && !pair.inside() {
-            true => boxes::between(striking, struck, &mut self.out.definitions, record.name.span),
-            false => touches(striking, pair.inside(), struck, span),
+        let definitions = &mut self.out.definitions;
+        let touches = match (striking.kind, pair.inside(), struck.kind) {
+            (Kind::Box, false, Kind::Box) => boxes::between(striking, struck, definitions, record.name.span),
+            (Kind::Capsule, false, Kind::Box | Kind::Rectangle) => {
+                capsule_on_box::between(striking, struck, definitions, record.name.span)
+            }
+            (_, inside, _) => touches(striking, inside, struck, span),
         };
         Some(([a, b], touches))
     }

@@ -103,10 +103,6 @@ pub(super) fn gap_of(height: Scalar, invalidity: Scalar, distance: Scalar) -> Sc
     greater(height, lesser(invalidity, product([integer(STEEP), distance])))
 }
 
-pub(super) fn opposite_of(a: Scalar) -> Scalar {
-    Scalar::Neg(Box::new(a))
-}
-
 /// 1 for the greatest of some numbers, the first of equal ones, and 0 for the others.
 pub(super) fn greatest(values: &[Scalar]) -> Vec<Scalar> {
     let mut out: Vec<Scalar> = Vec::new();

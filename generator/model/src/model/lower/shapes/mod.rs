@@ -3,6 +3,7 @@
 mod algebra;
 mod bodies;
 mod boxes;
+mod capsule_on_box;
 mod closed_forms;
 mod colours;
 mod contacts;
@@ -10,6 +11,8 @@ mod faces;
 mod features;
 mod heights;
 mod masses;
+mod separation;
+mod shared;
 mod sizes;
 
 pub(super) use bodies::shape_field;
