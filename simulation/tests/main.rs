@@ -20,6 +20,7 @@ mod exchange;
 mod faces;
 mod inclines;
 mod ledge;
+mod logs;
 mod many;
 mod mechanisms;
 mod one_contact;

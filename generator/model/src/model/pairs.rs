@@ -61,8 +61,8 @@ pub fn contacts((striking, vertices): (Kind, usize), inside: bool, struck: Kind)
         (Polytope, Plane | HalfSpace | Surface | Curve, false) => Some(vertices),
         (Capsule, Capsule, false) => Some(1),
         // its ends, and places between them at edges and vertices
-        (Capsule, Box, false) => Some(2 + 3 * 2 + 8),
-        (Capsule, Rectangle, false) => Some(2 + 2),
+        (Capsule, Box, false) => Some(2 + 12 + 8),
+        (Capsule, Rectangle, false) => Some(2 + 4),
         (Sphere, Sphere | Capsule | Cylinder | Box | Rectangle | Disc | Torus, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder, true) => Some(1),
         (Sphere, Box, true) => Some(6),

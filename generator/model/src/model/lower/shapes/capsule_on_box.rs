@@ -1,234 +1,253 @@
 //! Contacts of a capsule on a box, or on a rectangle in a plane of motion (section 16.11 of docs/theory.md).
 //!
-//! A capsule is what lies within r of a segment. The segment is nearest to the box with an end, with a place between
-//! its ends at an edge, or with such a place at a vertex; where it lies along a face, the ends of what is over the face
-//! are of these kinds too. The ends are balls on the box, which never end; the other contacts are valid between the ends
-//! of the segment and of the edge.
+//! A capsule is what lies within r of a segment. Its contacts are those of the ends of the segment with the box, of the
+//! segment with each edge, and of the segment with each vertex. Each gap is the distance of these two minus r: no less
+//! than that of the bodies. Each is valid where the two are nearest to each other, and a little beyond, where it has the
+//! place and the normal of the neighbour that takes over from it.
 //!
 //! All is written in components along the axes of the box: a those of the capsule's axis, d those of what leads from the
 //! middle of the box to that of the capsule.
 
 use super::algebra::*;
-use super::closed_forms::on_solid;
-use super::faces::{OVERLAPS, gap_of};
+use super::faces::{OVERLAPS, STEEP};
 use super::features::{Touch, axes_of};
 use super::separation::*;
 use super::shared::Shared;
 use crate::model::mechanism::{Definition, FrameId, Kind, Scalar, Shape, Vector};
 use crate::span::Span;
 
-/// The number of contacts on a box: two ends, two edges along each of three axes, eight vertices.
-pub const ON_BOX: usize = 2 + 3 * 2 + 8;
-/// The number of contacts on a rectangle: two ends, two corners.
-pub const ON_RECTANGLE: usize = 2 + 2;
+/// The number of contacts on a box: two ends, twelve edges, eight vertices.
+pub const ON_BOX: usize = 2 + 12 + 8;
+/// The number of contacts on a rectangle: two ends, four corners.
+pub const ON_RECTANGLE: usize = 2 + 4;
 
-/// The contacts: ends of the capsule, edges of the box, then its vertices.
+/// The angle, rad, by which a normal may leave those that a feature has, before the contact ends. Neighbours whose
+/// normals differ by it hand over without an impact.
+const TURN: (i64, i64) = (4, 10_000_000_000);
+
+/// The contacts: ends of the capsule, then edges of the box along x, y and z, then its vertices.
 pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
-    let mut touches: Vec<Touch> = ends(capsule).map(|ball| on_solid(&ball, solid, at)).into();
     let mut shared = Shared { definitions, shapes: [capsule, solid], at };
-    let (pair, edges) = Pair::of(capsule, solid, &mut shared);
-    for edge in &edges {
-        let sides = pair.nearest(edge, &mut shared);
-        touches.extend(sides.map(|sides| pair.on_edge(edge, &sides, &mut shared)));
+    let pair = Pair::of(capsule, solid, &mut shared);
+    let mut touches: Vec<Touch> = [1, -1].map(|end| pair.end(end, &mut shared)).into();
+    if solid.kind == Kind::Box {
+        for j in 0..3 {
+            touches.extend(SIDES.map(|sides| pair.on_edge(j, sides, &mut shared)));
+        }
     }
-    if pair.is_solid {
-        touches.extend(corner_signs().map(|signs| pair.on_vertex(&signs, &mut shared)));
-    }
+    let vertices = corner_signs().take(1 << solid.sizes.len());
+    touches.extend(vertices.map(|signs| pair.on_vertex(&signs, &mut shared)));
     debug_assert_eq!(touches.len(), if solid.kind == Kind::Box { ON_BOX } else { ON_RECTANGLE });
     touches
 }
 
-/// The balls at both ends.
-fn ends(capsule: &Shape) -> [Shape; 2] {
-    let along = capsule.axis.clone().unwrap_or(Vector::Zero);
-    let half_length = capsule.sizes.get(1).map_or(integer(0), half);
-    let by = scaled(half_length, &along);
-    [by.clone(), opposite(&by)].map(|by| Shape {
-        kind: Kind::Sphere,
-        at: capsule.at.plus(by),
-        sizes: capsule.sizes.iter().take(1).cloned().collect(),
-        axis: None,
-        ..capsule.clone()
-    })
-}
+/// On which sides of the middle an edge is, along the two axes across it.
+const SIDES: [[i64; 2]; 4] = [[1, 1], [-1, 1], [1, -1], [-1, -1]];
 
-/// What the contacts of edges and vertices share.
 struct Pair<'s> {
     capsule: &'s Shape,
     axis: Vector,
     radius: Scalar,
     half_length: Scalar,
-    /// whether it is a box, not a rectangle
-    is_solid: bool,
-    /// the frame of the box, and its half sides; the third of a rectangle is 0
+    /// the frame and the half sides of the box, of which a rectangle has two
     frame: FrameId,
-    half: [Scalar; 3],
+    half: Vec<Scalar>,
     /// components of the capsule's axis, and of its middle from that of the box
     a: [Scalar; 3],
     d: [Scalar; 3],
     /// the sum of all half lengths and of the radius
     extent: Scalar,
-    /// how far the segment and the box are apart along any of the axes that might separate them; the second without
-    /// those across edges parallel to the segment
-    distance: Scalar,
-    overlap: Scalar,
+    /// how far the segment and the box are apart along any of the axes that might separate them: of a segment that
+    /// passes through the box it is negative
+    apart: Scalar,
 }
 
-/// An edge direction of the box beside the segment.
-struct Across {
-    /// which axis of the box, and the two others
-    j: usize,
-    others: [usize; 2],
-    /// squared sine of the angle of edge and segment, and the sine, no less than that of parallel ones
-    square: Scalar,
-    sine: Scalar,
-    /// 1 or -1, so that with it a x b_j leads from the box to the capsule
-    turned: Scalar,
+/// What a contact is of: the nearest place on the segment, and what leads there from the box.
+struct Near {
+    /// from the middle of the capsule, along its axis
+    t: Scalar,
+    w: [Scalar; 3],
+    /// the length of w
+    distance: Scalar,
 }
 
 impl<'s> Pair<'s> {
-    /// The pair, and the directions of the edges.
-    fn of(capsule: &'s Shape, solid: &Shape, shared: &mut Shared<'_>) -> (Pair<'s>, Vec<Across>) {
-        let is_solid = solid.kind == Kind::Box;
+    fn of(capsule: &'s Shape, solid: &Shape, shared: &mut Shared<'_>) -> Pair<'s> {
         let axis = capsule.axis.clone().unwrap_or(Vector::Zero);
         let sizes = |i: usize| capsule.sizes.get(i).cloned().unwrap_or_else(|| integer(0));
         let (radius, half_length) = (sizes(0), half(&sizes(1)));
-        let half: [Scalar; 3] = [0, 1, 2].map(|i| solid.sizes.get(i).map_or(integer(0), half));
+        let half: Vec<Scalar> = solid.sizes.iter().map(half).collect();
         let from = capsule.at.from(&solid.at);
         let axes = axes_of(solid);
         let a = axes.each_ref().map(|e| shared.scalar(dot(&axis, e), "cosine"));
         let d = axes.each_ref().map(|e| shared.scalar(dot(&from, e), "distance of the middles"));
-        let lengths = half.iter().cloned().chain([radius.clone(), half_length.clone()]);
-        let extent = shared.scalar(all(lengths), "extent");
-        // a rectangle has corners alone, which are edges along the third axis
-        let along = if is_solid { 0..3 } else { 2..3 };
-        let mut distances: Vec<Scalar> = Vec::new();
-        for i in 0..solid.sizes.len() {
-            let reach = all([half[i].clone(), product([half_length.clone(), size(a[i].clone())])]);
-            distances.push(shared.scalar(less(size(d[i].clone()), reach), "distance along an axis"));
-        }
-        let mut known = distances.clone();
-        let mut edges = Vec::new();
-        for j in along {
-            let [k, l] = others(j);
-            let squared = all([square(a[k].clone()), square(a[l].clone())]);
-            let squared = shared.scalar(squared, "squared sine");
-            let floor = square(ratio(PARALLEL.0, PARALLEL.1));
-            let sine = shared.scalar(root(greater(squared.clone(), floor)), "sine of edges that are not parallel");
-            let apart =
-                less(product([d[k].clone(), a[l].clone()]), product([d[l].clone(), a[k].clone()]));
-            let apart = shared.scalar(apart, "distance of the middles across edges");
-            let reach = all([
-                product([half[k].clone(), size(a[l].clone())]),
-                product([half[l].clone(), size(a[k].clone())]),
-            ]);
-            let distance = quotient(less(size(apart.clone()), reach), sine.clone(), shared.at);
-            let distance = shared.scalar(distance, "distance across edges");
-            known.push(lesser(distance.clone(), crossed(squared.clone(), &extent)));
-            distances.push(distance);
-            let turned = shared.scalar(sign(apart.clone()), "side of edges");
-            edges.push(Across { j, others: [k, l], square: squared, sine, turned });
-        }
-        let mut greatest_of = |distances: Vec<Scalar>, what: &str| {
-            let greatest = distances.into_iter().reduce(greater).unwrap_or_else(|| integer(0));
-            shared.scalar(greatest, what)
-        };
-        let distance = greatest_of(distances, "distance of the segment");
-        let overlap = greatest_of(known, "distance of the segment across edges that are not parallel");
+        let extent = all(half.iter().cloned().chain([radius.clone(), half_length.clone()]));
+        let extent = shared.scalar(extent, "extent");
         let frame = solid.axes.unwrap_or(solid.frame);
-        let pair =
-            Pair { capsule, axis, radius, half_length, is_solid, frame, half, a, d, extent, distance, overlap };
-        (pair, edges)
+        let apart = integer(0);
+        let pair = Pair { capsule, axis, radius, half_length, frame, half, a, d, extent, apart };
+        let apart = shared.scalar(pair.separation(shared.at), "distance of the segment");
+        Pair { apart, ..pair }
+    }
+
+    /// How far the segment and the box are apart along the axes of the box, and along the products of these with the
+    /// capsule's, but for those of parallel edges.
+    fn separation(&self, at: Span) -> Scalar {
+        let flat = self.half.len() == 2;
+        let along = (0..self.half.len()).map(|i| {
+            let reach = all([self.half[i].clone(), product([self.half_length.clone(), size(self.a[i].clone())])]);
+            less(size(self.d[i].clone()), reach)
+        });
+        let edges = if flat { 2..3 } else { 0..3 };
+        let across = edges.map(|j| {
+            let [k, l] = others(j);
+            let component = |i: usize| self.a[i].clone();
+            let middles = less(
+                product([self.d[k].clone(), component(l)]),
+                product([self.d[l].clone(), component(k)]),
+            );
+            let reach = all([
+                product([self.half[k].clone(), size(component(l))]),
+                product([self.half[l].clone(), size(component(k))]),
+            ]);
+            let distance = quotient(less(size(middles), reach), self.sine(j), at);
+            if flat { distance } else { lesser(distance, crossed(self.squared_sine(j), &self.extent)) }
+        });
+        along.chain(across).reduce(greater).unwrap_or_else(|| integer(0))
+    }
+
+    /// Of the angle between the segment and the edges along an axis.
+    fn squared_sine(&self, j: usize) -> Scalar {
+        let [k, l] = others(j);
+        all([square(self.a[k].clone()), square(self.a[l].clone())])
+    }
+
+    /// The sine, no less than that of parallel edges.
+    fn sine(&self, j: usize) -> Scalar {
+        root(greater(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
+    }
+
+    /// What leads to a place on the segment from a place of the box.
+    fn near(&self, t: Scalar, from: &[Scalar; 3], shared: &mut Shared<'_>) -> Near {
+        let w: [Scalar; 3] =
+            std::array::from_fn(|i| all([from[i].clone(), product([t.clone(), self.a[i].clone()])]));
+        let w = w.map(|w| shared.scalar(w, "distance from a feature"));
+        let distance = norm(&Vector::Components(self.frame, Box::new(w.clone())));
+        let distance = shared.scalar(distance, "distance from a feature");
+        Near { t, w, distance }
+    }
+
+    /// The part of w along the segment.
+    fn along(&self, near: &Near) -> Scalar {
+        all((0..3).map(|i| product([near.w[i].clone(), self.a[i].clone()])))
+    }
+
+    /// How far a component of w may be on the other side of zero: times the distance it is an angle.
+    fn turn(&self, near: &Near) -> Scalar {
+        product([ratio(TURN.0, TURN.1), near.distance.clone()])
+    }
+
+    /// The contact of an end, on this side of the middle: a ball on the box. It is the nearest place of the segment
+    /// where w does not lead back along it.
+    fn end(&self, side: i64, shared: &mut Shared<'_>) -> Touch {
+        let t = signed(side, self.half_length.clone());
+        let place: [Scalar; 3] = std::array::from_fn(|i| {
+            let place = all([self.d[i].clone(), product([t.clone(), self.a[i].clone()])]);
+            shared.scalar(place, "place of an end")
+        });
+        // from the nearest point of the box
+        let from: [Scalar; 3] = std::array::from_fn(|i| {
+            let held = self.half.get(i).map_or(integer(0), |half| between_bounds(place[i].clone(), half));
+            less(self.d[i].clone(), held)
+        });
+        let near = self.near(t, &from, shared);
+        let back = signed(side, self.along(&near));
+        let validity = less(self.turn(&near), back);
+        let touch = self.touch(&near, vec![validity], shared);
+        // of a segment that passes through the box
+        let overlap = all([self.apart.clone(), self.share(OVERLAPS)]);
+        Touch { gap: lesser(touch.gap, product([integer(STEEP), overlap])), ..touch }
+    }
+
+    /// The contact with an edge along the axis j, which is on these sides of the middle along the two others.
+    fn on_edge(&self, j: usize, sides: [i64; 2], shared: &mut Shared<'_>) -> Touch {
+        let [k, l] = others(j);
+        let a = |i: usize| self.a[i].clone();
+        // from the middle of the edge to that of the capsule
+        let mut from = self.d.clone();
+        for (i, side) in [(k, sides[0]), (l, sides[1])] {
+            let beside = less(self.d[i].clone(), signed(side, self.half[i].clone()));
+            from[i] = shared.scalar(beside, "distance from an edge");
+        }
+        let across = all([product([from[k].clone(), a(k)]), product([from[l].clone(), a(l)])]);
+        let across = shared.scalar(across, "distance from an edge along the segment");
+        // the nearest places of the two lines, each held within its bounds and then found again for the other
+        let sine = square(self.sine(j));
+        let free = quotient(opposite_of(across.clone()), sine, shared.at);
+        let guess = shared.scalar(between_bounds(free, &self.half_length), "place on the segment");
+        let u = all([self.d[j].clone(), product([guess, a(j)])]);
+        let u = shared.scalar(between_bounds(u, &self.half[j]), "place on an edge");
+        from[j] = shared.scalar(less(self.d[j].clone(), u), "distance from a place on an edge");
+        let t = opposite_of(all([product([from[j].clone(), a(j)]), across]));
+        let t = shared.scalar(between_bounds(t, &self.half_length), "place on the segment");
+        let near = self.near(t, &from, shared);
+        let turn = self.turn(&near);
+        let mut bounds = self.is_inside(&near);
+        bounds.push(less(turn.clone(), size(near.w[j].clone())));
+        bounds.extend([(k, sides[0]), (l, sides[1])].map(|(i, side)| all([signed(side, near.w[i].clone()), turn.clone()])));
+        bounds.push(crossed(self.squared_sine(j), &self.radius));
+        self.one_of_many(&near, bounds, shared)
+    }
+
+    /// The contact with a vertex, which is on these sides of the middle: w leads out of all faces that meet there.
+    fn on_vertex(&self, signs: &[i64; 3], shared: &mut Shared<'_>) -> Touch {
+        let from: [Scalar; 3] = std::array::from_fn(|i| match self.half.get(i) {
+            Some(half) => less(self.d[i].clone(), signed(signs[i], half.clone())),
+            None => self.d[i].clone(),
+        });
+        let from = from.map(|w| shared.scalar(w, "distance from a vertex"));
+        let t = opposite_of(all((0..3).map(|i| product([from[i].clone(), self.a[i].clone()]))));
+        let t = shared.scalar(between_bounds(t, &self.half_length), "place on the segment");
+        let near = self.near(t, &from, shared);
+        let mut bounds = self.is_inside(&near);
+        let turn = self.turn(&near);
+        bounds.extend((0..self.half.len()).map(|i| all([signed(signs[i], near.w[i].clone()), turn.clone()])));
+        match self.half.len() {
+            3 => self.one_of_many(&near, bounds, shared),
+            _ => self.touch(&near, bounds, shared),
+        }
+    }
+
+    /// Between the ends w is across the segment.
+    fn is_inside(&self, near: &Near) -> Vec<Scalar> {
+        vec![less(self.turn(near), size(self.along(near)))]
     }
 
     fn share(&self, (n, d): (i64, i64)) -> Scalar {
         product([ratio(n, d), self.extent.clone()])
     }
 
-    /// On which sides of the middle the two edges are that can be nearest: both bound the face that is most across the
-    /// common normal, whose components are turned a_l and -turned a_k.
-    fn nearest(&self, edge: &Across, shared: &mut Shared<'_>) -> [[Scalar; 2]; 2] {
-        let [k, l] = edge.others;
-        let way = |sign_of: i64, c: &Scalar| signed(sign_of, product([edge.turned.clone(), sign(c.clone())]));
-        let support = [way(1, &self.a[l]), way(-1, &self.a[k])];
-        nearest_edges(support, [&size(self.a[l].clone()), &size(self.a[k].clone())], shared)
-    }
-
-    /// The contact of a place between the ends with an edge.
-    fn on_edge(&self, edge: &Across, sides: &[Scalar; 2], shared: &mut Shared<'_>) -> Touch {
-        let (j, [k, l]) = (edge.j, edge.others);
-        let a = |i: usize| self.a[i].clone();
-        // from the middle of the edge to that of the capsule
-        let across = [(k, &sides[0]), (l, &sides[1])]
-            .map(|(i, side)| less(self.d[i].clone(), product([side.clone(), self.half[i].clone()])));
-        let [w_k, w_l] = across.map(|w| shared.scalar(w, "distance from an edge"));
-        let height = less(product([w_k.clone(), a(l)]), product([w_l.clone(), a(k)]));
-        let height = quotient(product([edge.turned.clone(), height]), edge.sine.clone(), shared.at);
-        let height = shared.scalar(height, "height over an edge");
-        let along = opposite_of(all([product([w_k, a(k)]), product([w_l, a(l)])]));
-        let t = shared.scalar(
-            quotient(along, square(edge.sine.clone()), shared.at),
-            "place on the segment",
-        );
-        let mut bounds = vec![self.between_ends(t.clone())];
-        if self.is_solid {
-            let u = all([self.d[j].clone(), product([t.clone(), a(j)])]);
-            bounds.push(less(less(self.half[j].clone(), size(u)), self.share(WITHIN)));
-            bounds.push(crossed(edge.square.clone(), &self.extent));
-        }
-        // steep, so that it hides none of the other bounds where the height is the distance
-        let above = product([ratio(OVERLAP.1, OVERLAP.0), less(height.clone(), self.distance.clone())]);
-        let reached = greater(all([above, self.extent.clone()]), opposite_of(self.extent.clone()));
-        bounds.push(reached);
-        let part = |sign: i64, c: Scalar| {
-            quotient(signed(sign, product([edge.turned.clone(), c])), edge.sine.clone(), shared.at)
-        };
-        let mut components = [integer(0), integer(0), integer(0)];
-        (components[k], components[l]) = (part(1, a(l)), part(-1, a(k)));
-        let normal = Vector::Components(self.frame, Box::new(components));
-        let normal = shared.vector(normal, "normal at an edge");
-        self.touch(t, normal, (height, least(bounds)), shared)
-    }
-
-    /// The contact of a place between the ends with a vertex, which is on these sides of the middle.
-    fn on_vertex(&self, signs: &[i64; 3], shared: &mut Shared<'_>) -> Touch {
-        let from: [Scalar; 3] = std::array::from_fn(|i| {
-            less(self.d[i].clone(), signed(signs[i], self.half[i].clone()))
-        });
-        let from = from.map(|w| shared.scalar(w, "distance from a vertex"));
-        let terms = (0..3).map(|i| product([from[i].clone(), self.a[i].clone()]));
-        let free = shared.scalar(opposite_of(all(terms)), "place on the segment");
-        let t = shared.scalar(between_bounds(free.clone(), &self.half_length), "place between the ends");
-        let w: [Scalar; 3] = std::array::from_fn(|i| {
-            all([from[i].clone(), product([t.clone(), self.a[i].clone()])])
-        });
-        let w = w.map(|w| shared.scalar(w, "distance from a vertex"));
-        let mut bounds = vec![self.between_ends(free)];
-        // the normal leads out of all three faces that meet
-        bounds.extend((0..3).map(|i| all([signed(signs[i], w[i].clone()), self.share(REACH)])));
-        let w = Vector::Components(self.frame, Box::new(w));
-        let height = shared.scalar(norm(&w), "distance from a vertex");
-        self.touch(t, unit(&w, shared.at), (height, least(bounds)), shared)
-    }
-
-    /// How far a place on the segment is from its ends.
-    fn between_ends(&self, t: Scalar) -> Scalar {
-        less(less(self.half_length.clone(), size(t)), self.share(WITHIN))
-    }
-
-    /// The contact at a place on the segment; where it is none, its gap is how far it is from that.
-    fn touch(
-        &self,
-        t: Scalar,
-        normal: Vector,
-        (height, validity): (Scalar, Scalar),
-        shared: &mut Shared<'_>,
-    ) -> Touch {
-        let validity = shared.scalar(validity, "validity of a contact");
-        let apart = all([self.overlap.clone(), self.share(OVERLAPS)]);
-        let gap = gap_of(less(height, self.radius.clone()), opposite_of(validity.clone()), apart);
-        let by = total([scaled(t, &self.axis), opposite(&scaled(self.radius.clone(), &normal))]);
+    /// The contact; where it is not valid its gap is positive. Where the bodies touch, the bounds are angles times the
+    /// radius, and the validity is such an angle times the extent.
+    fn touch(&self, near: &Near, bounds: Vec<Scalar>, shared: &mut Shared<'_>) -> Touch {
+        let at = shared.at;
+        let scale = quotient(self.extent.clone(), self.radius.clone(), at);
+        let validity = shared.scalar(product([scale, least(bounds)]), "validity of a contact");
+        let height = less(near.distance.clone(), self.radius.clone());
+        let gap = greater(height, opposite_of(validity.clone()));
+        let part = |w: &Scalar| quotient(w.clone(), near.distance.clone(), at);
+        let normal = Vector::Components(self.frame, Box::new(near.w.each_ref().map(part)));
+        let normal = shared.vector(normal, "normal of a contact");
+        let by = total([scaled(near.t.clone(), &self.axis), opposite(&scaled(self.radius.clone(), &normal))]);
         let point = self.capsule.at.plus(by);
         Touch { point, normal, gap, validity: Some(validity), tangent: None }
+    }
+
+    /// The same of a contact that is one of many: its tangent is along the segment.
+    fn one_of_many(&self, near: &Near, bounds: Vec<Scalar>, shared: &mut Shared<'_>) -> Touch {
+        let touch = self.touch(near, bounds, shared);
+        let along = dot(&self.axis, &touch.normal);
+        let tangent = unit(&total([self.axis.clone(), opposite(&scaled(along, &touch.normal))]), shared.at);
+        Touch { tangent: Some(tangent), ..touch }
     }
 }

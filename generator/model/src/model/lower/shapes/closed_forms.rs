@@ -119,7 +119,7 @@ fn thickness(solid: &Shape) -> Option<Scalar> {
 }
 
 /// A ball on a solid: the normal is along w, from the nearest point of the solid to the centre of the ball.
-pub fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
+fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
     let d = ball.at.from(&solid.at);
     let w = match nearest(solid, &d, at) {
         Vector::Zero => d,

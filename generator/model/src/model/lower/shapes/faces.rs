@@ -21,7 +21,7 @@ const OVERLAP: (i64, i64) = (8, 1_000_000_000);
 /// extent.
 pub const OVERLAPS: (i64, i64) = (4, 1_000_000);
 /// How much steeper than a distance the bound is that tells it.
-const STEEP: i64 = 10_000_000;
+pub const STEEP: i64 = 10_000_000;
 
 /// The contacts: the vertices of the first with the second, then those of the second with the first.
 pub fn between(first: &Shape, second: &Shape) -> Vec<Touch> {

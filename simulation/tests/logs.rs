@@ -1,0 +1,167 @@
+//! Capsules on boxes and rectangles: a log that tips over the edge of a table, lies across it, rolls off and falls
+//! (docs/theory.md, 16.11).
+
+use crate::common::{run, start, surface};
+use crate::many::model;
+use hodograph::Law;
+use hodograph_random::Random;
+use hodograph_simulation::{EventKind, Simulation};
+
+const G: f64 = 9.81;
+const RADIUS: f64 = 0.05;
+const MASS: f64 = 4.0;
+const INERTIA: f64 = 0.25;
+
+/// Rates of a rounded bar that slides without friction on a fixed edge at O: the angle q of its axis, the place s of its
+/// middle along the axis from the place over the edge, and their rates. Lagrange's equations of the middle at
+/// r n + s a, with a = (cos q, sin q) and n = (-sin q, cos q).
+fn on_the_edge([q, s, w, v]: [f64; 4]) -> [f64; 4] {
+    let turning = (-MASS * G * s * q.cos() + MASS * RADIUS * s * w * w - 2.0 * MASS * s * v * w)
+        / (MASS * s * s + INERTIA);
+    [w, v, turning, RADIUS * turning + s * w * w - G * q.sin()]
+}
+
+/// Runge and Kutta's method of order four.
+fn integrate(mut state: [f64; 4], time: f64, steps: usize) -> [f64; 4] {
+    let h = time / steps as f64;
+    let moved = |s: &[f64; 4], k: &[f64; 4], h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
+    for _ in 0..steps {
+        let a = on_the_edge(state);
+        let b = on_the_edge(moved(&state, &a, 0.5 * h));
+        let c = on_the_edge(moved(&state, &b, 0.5 * h));
+        let d = on_the_edge(moved(&state, &c, h));
+        state = std::array::from_fn(|i| state[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+    }
+    state
+}
+
+/// The number of closed contacts of a log.
+fn closed(simulation: &Simulation<'_>) -> usize {
+    (0..22).filter(|&contact| simulation.phase(contact).is_some()).count()
+}
+
+/// A bar whose middle is beyond the edge tips at once, and slides on the edge without friction.
+#[test]
+fn a_bar_tips_over_an_edge() {
+    let bar = model("bar_on_ledge");
+    let mut simulation = start(&bar, &[0.1, RADIUS, 0.0], &[0.0; 3], surface(0.0, 0.0, Law::Newton));
+    run(&mut simulation, 0.3);
+    let [q, s, w, v] = integrate([0.0, 0.1, 0.0, 0.0], 0.3, 20_000);
+    let (sin, cos) = q.sin_cos();
+    let along = v - RADIUS * w;
+    let expected = [
+        s * cos - RADIUS * sin,
+        s * sin + RADIUS * cos,
+        q,
+        along * cos - s * w * sin,
+        along * sin + s * w * cos,
+        w,
+    ];
+    let found = [simulation.coordinates(), simulation.speeds()].concat();
+    assert!(q < -0.2, "{q}");
+    for (a, b) in found.iter().zip(&expected) {
+        assert!((a - b).abs() < 1e-9, "{found:?} {expected:?}");
+    }
+}
+
+/// What a log does in space that moves in a plane a bar of the same mass does in it: it tips, with friction that first
+/// holds it and then does not, slides off the edge and falls.
+#[test]
+fn a_log_that_moves_in_a_plane_does_what_a_bar_does() {
+    let (log, bar) = (model("log_on_table"), model("bar_on_ledge"));
+    // mass and moment of inertia of the log: pi r^2 l and 4/3 pi r^3 with 600 kg/m^3
+    let (r, l) = (RADIUS, 0.8);
+    let (rod, balls) = (600.0 * std::f64::consts::PI * r * r * l, 800.0 * std::f64::consts::PI * r * r * r);
+    let across = rod * (r * r / 4.0 + l * l / 12.0) + balls * (0.4 * r * r + 0.375 * l * r + l * l / 4.0);
+    let bar = crate::many::with_parameters(&bar, &[("m", rod + balls), ("J", across)]);
+    for (mu, e, height) in [(0.0, 0.0, 0.0), (0.3, 0.0, 0.0), (0.5, 0.4, 0.2)] {
+        let options = || surface(mu, e, Law::Newton);
+        let mut in_plane = start(&bar, &[0.1, RADIUS + height, 0.0], &[0.2, 0.0, 0.0], options());
+        let q = [0.1, RADIUS + height, 0.3, 1.0, 0.0, 0.0, 0.0];
+        let mut in_space = start(&log, &q, &[0.2, 0.0, 0.0, 0.0, 0.0, 0.0], options());
+        for step in 1..=40 {
+            let time = 0.02 * f64::from(step);
+            run(&mut in_space, time);
+            run(&mut in_plane, time);
+            let (q, u) = (in_space.coordinates(), in_space.speeds());
+            let found = [q[0], q[1], 2.0 * q[6].atan2(q[3]), u[0], u[1], u[5]];
+            let wanted = [in_plane.coordinates(), in_plane.speeds()].concat();
+            let off = found.iter().zip(&wanted).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
+            assert!(off < 1e-9, "mu {mu} at {time}: {off:e} {found:?} {wanted:?}");
+        }
+        assert!(in_plane.coordinates()[1] < -0.2, "it has not fallen: {:?}", in_plane.coordinates());
+    }
+}
+
+/// A log that is dropped flat across a corner of the table rests on both of its edges, and moves straight down to it.
+#[test]
+fn a_log_dropped_across_a_corner_rests_on_both_edges() {
+    let log = model("log_on_table");
+    // over the edge x = 0 and the edge z = 1, in the direction x + z; its middle is above the table
+    let eighth = (std::f64::consts::PI / 8.0).sin_cos();
+    let q = [-0.1, 0.3, 0.9, eighth.1, 0.0, -eighth.0, 0.0];
+    for e in [0.0, 0.3] {
+        let mut simulation = start(&log, &q, &[0.0; 6], surface(0.5, e, Law::Poisson));
+        let events = run(&mut simulation, 2.0);
+        assert!(events.iter().any(|event| event.kind.name() == "collision"), "{events:#?}");
+        let (q, u) = (simulation.coordinates(), simulation.speeds());
+        assert!(u.iter().all(|u| u.abs() < 1e-9), "{u:?}");
+        assert!((q[1] - RADIUS).abs() < 1e-9 && (q[0] + 0.1).abs() < 1e-6, "{q:?}");
+        assert!(closed(&simulation) >= 2, "{}", closed(&simulation));
+    }
+}
+
+/// A log that rolls on the table along an edge comes to the end of what carries it: it turns over the edge, or over a
+/// corner, without an impact.
+#[test]
+fn a_log_rolls_over_an_edge_as_a_ball_does() {
+    let log = model("log_on_table");
+    // the axis along z, so that it rolls in x; half of it is beyond the corner at z = 1
+    let quarter = (std::f64::consts::PI / 4.0).sin_cos();
+    for middle in [0.0, 0.8] {
+        let q = [-0.1, RADIUS, middle, quarter.1, 0.0, quarter.0, 0.0];
+        // rolling: the speed of the middle over the radius, about -N.z; B.x is along -N.z
+        let (speed, mu) = (0.2, 1.0);
+        let u = [speed, 0.0, 0.0, speed / RADIUS, 0.0, 0.0];
+        let mut simulation = start(&log, &q, &u, surface(mu, 0.0, Law::Newton));
+        let events = run(&mut simulation, 0.75);
+        assert!(simulation.coordinates()[1] < RADIUS - 0.001, "{:?}", simulation.coordinates());
+        let before = events.iter().take_while(|event| event.time < 0.74);
+        for event in before {
+            assert!(!matches!(event.kind, EventKind::Collision { .. }), "{event:?}");
+        }
+        // it turns about its axis alone
+        let u = simulation.speeds();
+        assert!(u[2].abs() < 1e-9 && u[4].abs() < 1e-9 && u[5].abs() < 1e-9, "{u:?}");
+    }
+}
+
+/// Thrown logs: all motions go on to the end, and none gains energy.
+#[test]
+fn thrown_logs_come_to_an_end() {
+    let log = model("log_on_table");
+    let mut random = Random::named("thrown logs");
+    let (mut hits, mut kinds) = (0, [0; 3]);
+    for throw in 0..60 {
+        let mut e: [f64; 4] = std::array::from_fn(|_| random.between(-1.0, 1.0));
+        let size = e.iter().map(|c| c * c).sum::<f64>().sqrt();
+        e.iter_mut().for_each(|c| *c /= size);
+        let q = [random.between(-0.4, 0.2), 0.5, random.between(0.6, 1.1), e[0], e[1], e[2], e[3]];
+        let mut u: Vec<f64> = (0..6).map(|_| random.between(-1.0, 1.0)).collect();
+        u[3..].iter_mut().for_each(|w| *w *= 5.0);
+        let mut simulation = start(&log, &q, &u, surface(0.4, 0.3, Law::Stronge));
+        let first = simulation.energy().unwrap().total().unwrap();
+        let events = run(&mut simulation, 1.0);
+        let last = simulation.energy().unwrap();
+        let off = last.total().unwrap() - first - last.friction - last.impacts;
+        assert!(off.abs() < 1e-8 && last.friction <= 0.0 && last.impacts <= 0.0, "throw {throw}: {off:e} {last:?}");
+        for event in &events {
+            if let (EventKind::Collision { .. }, Some(contact)) = (&event.kind, event.contact) {
+                hits += 1;
+                kinds[usize::from(contact >= 2) + usize::from(contact >= 14)] += 1;
+            }
+        }
+    }
+    println!("{hits} collisions: {kinds:?} of ends, edges and vertices");
+    assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
+}
