@@ -27,7 +27,7 @@ impl Transition<'_> {
         if let Some(parts) = &mut self.parts {
             parts.add(step, &modes, &self.front.y[..n + p]);
         }
-        self.step = Some((step.clone(), modes));
+        self.steps.push((step.clone(), modes));
         for (scale, speed) in self.front.scale.iter_mut().zip(&self.front.y[n..]) {
             *scale = scale.max(speed.abs());
         }

@@ -223,7 +223,7 @@ impl Simulation<'_> {
     ///
     /// Those of [`Simulation::advance`].
     pub fn continue_from(&mut self, state: &State<'_>) -> Result<Vec<Event>, SimulationError> {
-        self.step = None;
+        self.steps.clear();
         self.take(|transition| transition.handle_here(state))?;
         self.view = (self.front.t, self.front.y.clone());
         Ok(self.queue.drain(..).collect())
@@ -280,7 +280,7 @@ impl Simulation<'_> {
         // The rate at which slip turned in the last step is determined again by the next one.
         self.front.turnings = vec![None; self.front.phases.len()];
         self.view = (self.front.t, self.front.y.clone());
-        (self.step, self.failed) = (None, None);
+        (self.steps, self.failed) = (Vec::new(), None);
         self.queue.clear();
         true
     }

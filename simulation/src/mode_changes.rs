@@ -360,7 +360,7 @@ impl Transition<'_> {
         let quiet = rates.is_ok_and(|rates| rates[..n + p].iter().all(|rate| *rate == 0.0));
         if quiet {
             self.front.y = y;
-            if let Some((step, _)) = &mut self.step {
+            if let Some((step, _)) = self.steps.last_mut() {
                 step.corrected(&self.front.y);
             }
             self.push(None, EventKind::Rest);

@@ -35,8 +35,8 @@ pub struct Simulation<'m> {
     surfaces: Vec<Option<Pair>>,
     start: f64,
     pub(crate) front: Front,
-    /// the step that led to the front, and the modes during it
-    pub(crate) step: Option<(Step, Modes)>,
+    /// the steps that led to the front since it was last moved, and the modes during each
+    pub(crate) steps: Vec<(Step, Modes)>,
     /// events that have not been returned yet
     pub(crate) queue: VecDeque<Event>,
     /// the requested time, and the state then
@@ -108,7 +108,7 @@ impl<'m> Simulation<'m> {
             surfaces,
             start: state.time,
             front,
-            step: None,
+            steps: Vec::new(),
             queue: VecDeque::new(),
             view,
             failed: None,
@@ -139,7 +139,7 @@ impl<'m> Simulation<'m> {
             surfaces: &self.surfaces,
             front: self.front.clone(),
             events: Vec::new(),
-            step: None,
+            steps: Vec::new(),
             reached: None,
             parts: self.parts.as_ref().map(|_| Parts::default()),
         }
@@ -153,7 +153,7 @@ impl<'m> Simulation<'m> {
     ) -> Result<(), SimulationError> {
         let mut transition = self.transition();
         let done = change(&mut transition);
-        let Transition { front, events, step, reached, parts: later, .. } = transition;
+        let Transition { front, events, mut steps, reached, parts: later, .. } = transition;
         if let (Some(parts), Some(later)) = (&mut self.parts, later)
             && (done.is_ok() || reached.is_some())
         {
@@ -161,15 +161,15 @@ impl<'m> Simulation<'m> {
         }
         if let Err(error) = done {
             if let Some(front) = reached {
-                self.front = front;
-                self.step = step;
+                steps.retain(|(step, _)| step.t + step.h <= front.t);
+                (self.front, self.steps) = (front, steps);
             }
             return Err(error);
         }
         self.front = front;
         self.queue.extend(events);
-        if step.is_some() {
-            self.step = step;
+        if !steps.is_empty() {
+            self.steps = steps;
         }
         Ok(())
     }
@@ -267,9 +267,14 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Evaluates the state at a time in the last step.
+    /// The step in which a time before the front lies, and its modes.
+    fn step_at(&self, time: f64) -> Option<&(Step, Modes)> {
+        self.steps.iter().rfind(|(step, _)| step.t <= time).or(self.steps.first())
+    }
+
+    /// Evaluates the state at a time in the last steps.
     fn look(&mut self, time: f64) {
-        let state = match &self.step {
+        let state = match self.step_at(time) {
             _ if time >= self.front.t => Some(self.front.y.clone()),
             None => None,
             Some((step, modes)) => {
@@ -345,8 +350,8 @@ impl<'m> Simulation<'m> {
     /// event.
     fn phase_now(&self, index: usize) -> Option<ContactPhase> {
         let phase = self.front.phases.get(index)?;
-        if let Some((_, modes)) = &self.step
-            && self.view.0 < self.front.t
+        if self.view.0 < self.front.t
+            && let Some((_, modes)) = self.step_at(self.view.0)
         {
             let closed = modes.closed.iter().find(|closed| closed.contact == index);
             return Some(closed.map_or(ContactPhase::Open, |closed| match closed.slides {
@@ -395,8 +400,8 @@ impl<'m> Simulation<'m> {
     fn closed_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
         let mut transition = self.transition();
         let mut closed = transition.closed();
-        if let Some((_, modes)) = &self.step
-            && self.view.0 < self.front.t
+        if self.view.0 < self.front.t
+            && let Some((_, modes)) = self.step_at(self.view.0)
         {
             // The front may be after an event: within the step the modes were those before it.
             closed.clone_from(&modes.closed);

@@ -115,7 +115,7 @@ impl Transition<'_> {
         let modes = self.modes();
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
-        self.step = Some((step.clone(), modes));
+        self.steps.push((step.clone(), modes));
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let mut q = self.front.y[..n].to_vec();
         self.mechanism.normalise(&mut q).map_err(|error| self.failure(Failure::State(error)))?;

@@ -26,9 +26,10 @@ pub(crate) struct Transition<'s> {
     pub front: Front,
     /// the events so far
     pub events: Vec<Event>,
-    /// the step that led to the front, and the modes during it
-    pub step: Option<(Step, Modes)>,
-    /// the front at the end of that step, before its event was handled: the motion is valid up to there even
+    /// the steps that led to the front, each with the modes during it: the last of them ends there, and the end of slip,
+    /// which is followed separately, is one of its own
+    pub steps: Vec<(Step, Modes)>,
+    /// the front at the end of the first of them, before its event was handled: the motion is valid up to there even
     /// if the event cannot be handled
     pub reached: Option<Front>,
     /// the smooth parts, if they are recorded
