@@ -18,7 +18,7 @@ use crate::{EventKind, SimulationError};
 /// A contact is near its face if its gap is below this part of the length of the problem.
 const NEAR: f64 = 5e-11;
 /// A normal velocity below this part of its terms counts as zero.
-const STILL: f64 = 1e-9;
+const STILL: f64 = 1e-10;
 
 impl Transition<'_> {
     /// Whether the faces or edges of a contact are bounded.

@@ -425,6 +425,10 @@ impl Transition<'_> {
             let (gap, _) = self.gap_at(step, contact)?;
             let rounding = (4.0 * self.rounding_of_gap(contact)).max(RISEN * self.front.scales.length);
             let off = (gap - before - h * mean).abs();
+            // Beyond the features that touched, the gap is how far it is from them.
+            if off > rounding && !self.valid_at_end(step, contact)? {
+                continue;
+            }
             if off > MANY * rounding && off > OTHER * h * mean.abs() && h < MOMENT * self.front.scales.time {
                 let rate = (gap - before) / h;
                 return Err(self.error(Some(contact), ErrorKind::GapRate { rate, velocity: mean }));
@@ -434,6 +438,17 @@ impl Transition<'_> {
             }
         }
         Ok(true)
+    }
+
+    /// Whether a contact is within the features that touch at the end of a step.
+    fn valid_at_end(&self, step: &Step, contact: usize) -> Result<bool, SimulationError> {
+        if !self.ends(contact) {
+            return Ok(true);
+        }
+        let motion = self.motion(&[]);
+        let (time, (q, u)) = (step.t + step.h, motion.split(&step.end));
+        let inputs = motion.inputs(time, &step.end).map_err(|failure| self.failure(failure))?;
+        self.is_valid(contact, &State { time, coordinates: q, speeds: u, inputs: &inputs })
     }
 
     /// Whether a contact that lifts off and returns at the end of a step is clearly open in between.

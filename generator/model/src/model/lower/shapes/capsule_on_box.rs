@@ -21,9 +21,11 @@ pub const ON_BOX: usize = 2 + 12 + 8;
 /// The number of contacts on a rectangle: two ends, four corners.
 pub const ON_RECTANGLE: usize = 2 + 4;
 
-/// The angle, rad, by which a normal may leave those that a feature has, before the contact ends. Neighbours whose
-/// normals differ by it hand over without an impact.
+/// The angle, rad, by which a normal may leave those that a feature has, before the contact ends: while it does, the
+/// place and the normal are those of the neighbour that takes over.
 const TURN: (i64, i64) = (4, 10_000_000_000);
+/// How many times the extent of both bodies a validity is, per rad: [`TURN`] is far above the rounding of places then.
+const PER_RADIAN: i64 = 1000;
 
 /// The contacts: ends of the capsule, then edges of the box along x, y and z, then its vertices.
 pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
@@ -142,13 +144,19 @@ impl<'s> Pair<'s> {
         all((0..3).map(|i| product([near.w[i].clone(), self.a[i].clone()])))
     }
 
+    /// 1 where edges along an axis are not parallel to the segment, so that they have contacts with it, else 0.
+    fn crosses(&self, j: usize) -> Scalar {
+        step(less(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
+    }
+
     /// How far a component of w may be on the other side of zero: times the distance it is an angle.
     fn turn(&self, near: &Near) -> Scalar {
         product([ratio(TURN.0, TURN.1), near.distance.clone()])
     }
 
     /// The contact of an end, on this side of the middle: a ball on the box. It is the nearest place of the segment
-    /// where w does not lead back along it.
+    /// where w does not lead back along it; an edge or a vertex takes over there. Over a face, and over an edge parallel
+    /// to the segment, nothing does, and the normal may turn.
     fn end(&self, side: i64, shared: &mut Shared<'_>) -> Touch {
         let t = signed(side, self.half_length.clone());
         let place: [Scalar; 3] = std::array::from_fn(|i| {
@@ -160,10 +168,21 @@ impl<'s> Pair<'s> {
             let held = self.half.get(i).map_or(integer(0), |half| between_bounds(place[i].clone(), half));
             less(self.d[i].clone(), held)
         });
+        let beyond: Vec<Scalar> = (self.half.iter().zip(&place))
+            .map(|(half, place)| shared.scalar(step(less(size(place.clone()), half.clone())), "whether an end is beyond a face"))
+            .collect();
+        let both = |k: usize, l: usize| product([beyond[k].clone(), beyond[l].clone()]);
+        let taken_over = match self.half.len() {
+            3 => (0..3)
+                .map(|j| product([both(others(j)[0], others(j)[1]), self.crosses(j)]))
+                .reduce(greater)
+                .unwrap_or_else(|| integer(0)),
+            _ => both(0, 1),
+        };
         let near = self.near(t, &from, shared);
+        let may_turn = product([less(integer(1), taken_over), self.turn(&near)]);
         let back = signed(side, self.along(&near));
-        let validity = less(self.turn(&near), back);
-        let touch = self.touch(&near, vec![validity], shared);
+        let touch = self.touch(&near, vec![less(may_turn, back)], shared);
         // of a segment that passes through the box
         let overlap = all([self.apart.clone(), self.share(OVERLAPS)]);
         Touch { gap: lesser(touch.gap, product([integer(STEEP), overlap])), ..touch }
@@ -199,7 +218,8 @@ impl<'s> Pair<'s> {
         self.one_of_many(&near, bounds, shared)
     }
 
-    /// The contact with a vertex, which is on these sides of the middle: w leads out of all faces that meet there.
+    /// The contact with a vertex, which is on these sides of the middle: w leads out of all faces that meet there. Edges
+    /// take over, but for those parallel to the segment, and in a plane, where the normal may turn.
     fn on_vertex(&self, signs: &[i64; 3], shared: &mut Shared<'_>) -> Touch {
         let from: [Scalar; 3] = std::array::from_fn(|i| match self.half.get(i) {
             Some(half) => less(self.d[i].clone(), signed(signs[i], half.clone())),
@@ -211,7 +231,13 @@ impl<'s> Pair<'s> {
         let near = self.near(t, &from, shared);
         let mut bounds = self.is_inside(&near);
         let turn = self.turn(&near);
-        bounds.extend((0..self.half.len()).map(|i| all([signed(signs[i], near.w[i].clone()), turn.clone()])));
+        bounds.extend((0..self.half.len()).map(|i| {
+            let may_turn = match self.half.len() {
+                3 => product([less(integer(1), self.crosses(i)), turn.clone()]),
+                _ => turn.clone(),
+            };
+            all([signed(signs[i], near.w[i].clone()), may_turn])
+        }));
         match self.half.len() {
             3 => self.one_of_many(&near, bounds, shared),
             _ => self.touch(&near, bounds, shared),
@@ -228,10 +254,11 @@ impl<'s> Pair<'s> {
     }
 
     /// The contact; where it is not valid its gap is positive. Where the bodies touch, the bounds are angles times the
-    /// radius, and the validity is such an angle times the extent.
+    /// radius.
     fn touch(&self, near: &Near, bounds: Vec<Scalar>, shared: &mut Shared<'_>) -> Touch {
         let at = shared.at;
-        let scale = quotient(self.extent.clone(), self.radius.clone(), at);
+        let scale = product([integer(PER_RADIAN), self.extent.clone()]);
+        let scale = quotient(scale, self.radius.clone(), at);
         let validity = shared.scalar(product([scale, least(bounds)]), "validity of a contact");
         let height = less(near.distance.clone(), self.radius.clone());
         let gap = greater(height, opposite_of(validity.clone()));
