@@ -5,6 +5,9 @@
 //! closed, its validity is monitored like a gap; where it falls below zero, the contact ends. An open contact
 //! may come to its face from the side, along a surface on which it slides; then it begins without an impact.
 //! To detect this, its gap is first monitored at a small height, and below that height its validity.
+//!
+//! Where a contact hands over to its neighbour both may be the same: one place and one normal. Only one of them is closed
+//! then, which goes on to its own end.
 
 use hodograph::{State, StateError};
 use nalgebra::Vector3;
@@ -17,8 +20,10 @@ use crate::{EventKind, SimulationError};
 
 /// A contact is near its face if its gap is below this part of the length of the problem.
 const NEAR: f64 = 5e-11;
+/// Normal partial velocities that differ by less than this part are the same.
+const SAME: f64 = 1e-9;
 /// A normal velocity below this part of its terms counts as zero.
-const STILL: f64 = 1e-10;
+const STILL: f64 = 1e-9;
 
 impl Transition<'_> {
     /// Whether the faces or edges of a contact are bounded.
@@ -62,7 +67,7 @@ impl Transition<'_> {
     /// Handles a contact that has come to its face from the side: it begins if its normal velocity is zero.
     pub(crate) fn enter(&mut self, contact: usize) -> Result<(), SimulationError> {
         let gap = self.mechanism.gap(contact, &self.here()).map_err(|e| self.failure(Failure::State(e)))?;
-        if gap.is_some_and(|gap| gap <= self.low()) && self.keeps_height(contact)? {
+        if gap.is_some_and(|gap| gap <= self.low()) && self.keeps_height(contact)? && !self.is_held(contact)? {
             let was = self.front.phases.clone();
             let closed = |other: usize| other == contact || was[other].is_closed();
             let mut candidates: Vec<usize> = (0..was.len()).filter(|&other| closed(other)).collect();
@@ -90,11 +95,37 @@ impl Transition<'_> {
                 continue;
             }
             let gap = self.mechanism.gap(contact, &here).map_err(failed)?;
-            if gap.is_some_and(|gap| gap <= self.low()) && self.keeps_height(contact)? {
+            if gap.is_some_and(|gap| gap <= self.low())
+                && self.keeps_height(contact)?
+                && !self.is_held(contact)?
+                && !self.coincides(contact, &arrived)?
+            {
                 arrived.push(contact);
             }
         }
         Ok(arrived)
+    }
+
+    /// Whether a closed contact holds the place of this one, with the same normal.
+    pub(crate) fn is_held(&self, contact: usize) -> Result<bool, SimulationError> {
+        let closed: Vec<usize> =
+            (0..self.front.phases.len()).filter(|&other| self.front.phases[other].is_closed()).collect();
+        self.coincides(contact, &closed)
+    }
+
+    /// Whether a contact whose faces or edges are bounded has place and normal of another such contact: its normal partial
+    /// velocities.
+    fn coincides(&self, contact: usize, others: &[usize]) -> Result<bool, SimulationError> {
+        let mut all = vec![contact];
+        all.extend(others.iter().copied().filter(|&other| other != contact && self.ends(other)));
+        if all.len() == 1 || !self.ends(contact) {
+            return Ok(false);
+        }
+        let support = ClosedContacts::new(self.mechanism, &self.here(), &all, false)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let normal = |place: usize| support.partials.column(3 * place);
+        let size = normal(0).amax();
+        Ok((1..all.len()).any(|place| (normal(place) - normal(0)).amax() <= SAME * size))
     }
 
     /// Whether the normal velocity of a contact is zero up to rounding.

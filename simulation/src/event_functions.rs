@@ -104,6 +104,7 @@ impl Transition<'_> {
         for (contact, phase) in self.front.phases.iter().enumerate() {
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
+                && !(*leaving == Leaving::Near && self.is_held(contact).unwrap_or(false))
             {
                 watched.push(Watched::Gap(contact));
                 let rate = || self.rounding_of_rate(contact);

@@ -59,7 +59,7 @@ impl Transition<'_> {
                 self.gap_is_known(contact)?;
                 let (_, rate) = self.gap_at(&step, contact)?;
                 if self.ends(contact) && self.keeps_height(contact)? {
-                    return self.stay(contact);
+                    return if self.is_held(contact)? { Ok(()) } else { self.stay(contact) };
                 }
                 if rate >= 0.0 {
                     let leaves = matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. }));

@@ -183,6 +183,28 @@ fn boxes() {
     campaign(&Family::new("tumbling_box", 6.0, [1.0, 0.7], throw), 0..4);
 }
 
+/// Logs thrown on the edges and the corner of a table, half of them flat and slowly.
+#[test]
+fn logs() {
+    let throw = |m: &InterpretedMechanism, start: &mut Start, random: &mut Random| {
+        let flat = random.below(2) == 0;
+        start.set(m, "x", random.between(-0.4, 0.2));
+        start.set(m, "y", if flat { random.between(0.06, 0.1) } else { 0.5 });
+        start.set(m, "z", random.between(0.5, 1.1));
+        turn(m, start, random, ["e0", "e1", "e2", "e3"], None);
+        if flat {
+            let half = random.between(-3.0, 3.0);
+            ["e0", "e1", "e2", "e3"].into_iter().for_each(|name| start.set(m, name, 0.0));
+            start.set(m, "e0", half.cos());
+            start.set(m, "e2", half.sin());
+        }
+        start.speeds.fill(0.0);
+        let [linear, angular] = if flat { [0.5, 1.0] } else { [1.0, 6.0] };
+        speeds(m, start, random, linear, angular);
+    };
+    campaign(&Family::new("log_on_table", 1.5, [1.0, 0.7], throw), 0..20);
+}
+
 #[test]
 fn two_cubes() {
     let throw = |m: &InterpretedMechanism, start: &mut Start, random: &mut Random| {

@@ -21,11 +21,11 @@ pub const ON_BOX: usize = 2 + 12 + 8;
 /// The number of contacts on a rectangle: two ends, four corners.
 pub const ON_RECTANGLE: usize = 2 + 4;
 
-/// The angle, rad, by which a normal may leave those that a feature has, before the contact ends: while it does, the
-/// place and the normal are those of the neighbour that takes over.
-const TURN: (i64, i64) = (4, 10_000_000_000);
-/// How many times the extent of both bodies a validity is, per rad: [`TURN`] is far above the rounding of places then.
-const PER_RADIAN: i64 = 1000;
+/// The angle, rad, by which a normal may leave those that a feature has, before the contact ends, where place and normal
+/// are then those of the neighbour that takes over, and where none takes over: far above the rounding of places.
+const TURN: (i64, i64) = (1, 1_000_000);
+/// The same where the neighbour that takes over has other places and normals there.
+const FINE: (i64, i64) = (4, 10_000_000_000);
 
 /// The contacts: ends of the capsule, then edges of the box along x, y and z, then its vertices.
 pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
@@ -45,6 +45,11 @@ pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>
 
 /// On which sides of the middle an edge is, along the two axes across it.
 const SIDES: [[i64; 2]; 4] = [[1, 1], [-1, 1], [1, -1], [-1, -1]];
+
+/// 1 where a place is within a half length of the middle, else 0.
+fn within(place: &Scalar, half: &Scalar) -> Scalar {
+    step(less(half.clone(), size(place.clone())))
+}
 
 struct Pair<'s> {
     capsule: &'s Shape,
@@ -149,9 +154,12 @@ impl<'s> Pair<'s> {
         step(less(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
     }
 
-    /// How far a component of w may be on the other side of zero: times the distance it is an angle.
-    fn turn(&self, near: &Near) -> Scalar {
-        product([ratio(TURN.0, TURN.1), near.distance.clone()])
+    /// How far a component of w may be on the other side of zero: times the distance it is an angle. It is small, or, where
+    /// `free` is 1 and not 0, large.
+    fn turn(&self, near: &Near, free: Scalar) -> Scalar {
+        let [fine, whole] = [FINE, TURN].map(|(n, d)| ratio(n, d));
+        let angle = all([product([free.clone(), whole]), product([less(integer(1), free), fine])]);
+        product([angle, near.distance.clone()])
     }
 
     /// The contact of an end, on this side of the middle: a ball on the box. It is the nearest place of the segment
@@ -180,9 +188,9 @@ impl<'s> Pair<'s> {
             _ => both(0, 1),
         };
         let near = self.near(t, &from, shared);
-        let may_turn = product([less(integer(1), taken_over), self.turn(&near)]);
         let back = signed(side, self.along(&near));
-        let touch = self.touch(&near, vec![less(may_turn, back)], shared);
+        let validity = less(self.turn(&near, less(integer(1), taken_over)), back);
+        let touch = self.touch(&near, vec![validity], shared);
         // of a segment that passes through the box
         let overlap = all([self.apart.clone(), self.share(OVERLAPS)]);
         Touch { gap: lesser(touch.gap, product([integer(STEEP), overlap])), ..touch }
@@ -205,14 +213,19 @@ impl<'s> Pair<'s> {
         let free = quotient(opposite_of(across.clone()), sine, shared.at);
         let guess = shared.scalar(between_bounds(free, &self.half_length), "place on the segment");
         let u = all([self.d[j].clone(), product([guess, a(j)])]);
+        let u = shared.scalar(u, "place on the line of an edge");
+        let inside_edge = within(&u, &self.half[j]);
         let u = shared.scalar(between_bounds(u, &self.half[j]), "place on an edge");
         from[j] = shared.scalar(less(self.d[j].clone(), u), "distance from a place on an edge");
         let t = opposite_of(all([product([from[j].clone(), a(j)]), across]));
+        let t = shared.scalar(t, "place on the line of the segment");
+        let inside_both = product([inside_edge, within(&t, &self.half_length)]);
         let t = shared.scalar(between_bounds(t, &self.half_length), "place on the segment");
         let near = self.near(t, &from, shared);
-        let turn = self.turn(&near);
         let mut bounds = self.is_inside(&near);
-        bounds.push(less(turn.clone(), size(near.w[j].clone())));
+        bounds.push(less(self.turn(&near, integer(1)), size(near.w[j].clone())));
+        // where both are inside, and the segment lies on a face, nothing takes over
+        let turn = shared.scalar(self.turn(&near, inside_both), "turn of a normal");
         bounds.extend([(k, sides[0]), (l, sides[1])].map(|(i, side)| all([signed(side, near.w[i].clone()), turn.clone()])));
         bounds.push(crossed(self.squared_sine(j), &self.radius));
         self.one_of_many(&near, bounds, shared)
@@ -227,16 +240,17 @@ impl<'s> Pair<'s> {
         });
         let from = from.map(|w| shared.scalar(w, "distance from a vertex"));
         let t = opposite_of(all((0..3).map(|i| product([from[i].clone(), self.a[i].clone()]))));
+        let t = shared.scalar(t, "place on the line of the segment");
+        let inside = within(&t, &self.half_length);
         let t = shared.scalar(between_bounds(t, &self.half_length), "place on the segment");
         let near = self.near(t, &from, shared);
         let mut bounds = self.is_inside(&near);
-        let turn = self.turn(&near);
         bounds.extend((0..self.half.len()).map(|i| {
             let may_turn = match self.half.len() {
-                3 => product([less(integer(1), self.crosses(i)), turn.clone()]),
-                _ => turn.clone(),
+                3 => product([less(integer(1), self.crosses(i)), inside.clone()]),
+                _ => inside.clone(),
             };
-            all([signed(signs[i], near.w[i].clone()), may_turn])
+            all([signed(signs[i], near.w[i].clone()), self.turn(&near, may_turn)])
         }));
         match self.half.len() {
             3 => self.one_of_many(&near, bounds, shared),
@@ -246,7 +260,7 @@ impl<'s> Pair<'s> {
 
     /// Between the ends w is across the segment.
     fn is_inside(&self, near: &Near) -> Vec<Scalar> {
-        vec![less(self.turn(near), size(self.along(near)))]
+        vec![less(self.turn(near, integer(1)), size(self.along(near)))]
     }
 
     fn share(&self, (n, d): (i64, i64)) -> Scalar {
@@ -254,11 +268,10 @@ impl<'s> Pair<'s> {
     }
 
     /// The contact; where it is not valid its gap is positive. Where the bodies touch, the bounds are angles times the
-    /// radius.
+    /// radius, and the validity is such an angle times the extent.
     fn touch(&self, near: &Near, bounds: Vec<Scalar>, shared: &mut Shared<'_>) -> Touch {
         let at = shared.at;
-        let scale = product([integer(PER_RADIAN), self.extent.clone()]);
-        let scale = quotient(scale, self.radius.clone(), at);
+        let scale = quotient(self.extent.clone(), self.radius.clone(), at);
         let validity = shared.scalar(product([scale, least(bounds)]), "validity of a contact");
         let height = less(near.distance.clone(), self.radius.clone());
         let gap = greater(height, opposite_of(validity.clone()));
