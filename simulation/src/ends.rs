@@ -21,7 +21,7 @@ use crate::{EventKind, SimulationError};
 /// A contact is near its face if its gap is below this part of the length of the problem.
 const NEAR: f64 = 5e-11;
 /// Normal partial velocities that differ by less than this part are the same.
-const SAME: f64 = 1e-9;
+const SAME: f64 = 2e-8;
 /// A normal velocity below this part of its terms counts as zero.
 const STILL: f64 = 1e-9;
 
@@ -135,6 +135,17 @@ impl Transition<'_> {
             .map_err(|error| self.failure(Failure::State(error)))?;
         let size = support.velocity_size(0, here.speeds).max(support.velocity_size(0, &self.front.scale));
         Ok(support.velocity[0].abs() <= STILL * size)
+    }
+
+    /// A closed contact that is at the boundary of its face, if there is one.
+    pub(crate) fn at_its_end(&self) -> Result<Option<usize>, SimulationError> {
+        for contact in self.closed().iter().map(|closed| closed.contact).filter(|&contact| self.ends(contact)) {
+            let validity = self.validity(contact, &self.here());
+            if validity.map_err(|error| self.failure(Failure::State(error)))? <= self.low() {
+                return Ok(Some(contact));
+            }
+        }
+        Ok(None)
     }
 
     /// Handles a closed contact at the boundary of its face: it ends, and the others take over.

@@ -356,7 +356,8 @@ impl Transition<'_> {
                         match leaving {
                             // A contact that comes along the surface of its face has a gap of rounding errors
                             // only.
-                            Leaving::Near if self.is_held(index).unwrap_or(false) => 1.0,
+                            // Its place is held by a closed contact.
+                            Leaving::Apart | Leaving::Near if self.is_held(index).unwrap_or(false) => 1.0,
                             Leaving::Apart | Leaving::Near if self.ends(index) => {
                                 (gap - self.low()).max(-self.validity(index, state)?)
                             }

@@ -392,7 +392,11 @@ impl Transition<'_> {
                 contact,
                 ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. },
             )) => self.jams(contact),
-            Some(failure) => Err(self.failure(failure)),
+            // Two closed contacts may have been the same up to here: the one that ends makes way for the other.
+            Some(failure) => match self.at_its_end()? {
+                Some(contact) if matches!(failure, Failure::NoForces) => self.leave(contact),
+                _ => Err(self.failure(failure)),
+            },
             None => match (self.singular_here(&self.closed()), self.turns_into_jam()?) {
                 (Some(contact), _) => self.end_at(contact),
                 (None, Some(contact)) => self.impact_without_collision(contact),

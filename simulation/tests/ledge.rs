@@ -68,8 +68,8 @@ fn a_block_tips_when_its_mass_centre_passes_the_edge() {
         [
             ("contact", Some(LEADING)),
             ("contact", Some(TRAILING)),
-            ("contact", Some(EDGE)),
             ("lift_off", Some(LEADING)),
+            ("contact", Some(EDGE)),
             ("lift_off", Some(TRAILING)),
         ],
         "{:?}",
