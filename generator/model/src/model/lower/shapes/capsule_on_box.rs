@@ -46,11 +46,6 @@ pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>
 /// On which sides of the middle an edge is, along the two axes across it.
 const SIDES: [[i64; 2]; 4] = [[1, 1], [-1, 1], [1, -1], [-1, -1]];
 
-/// 1 where a place is within a half length of the middle, else 0.
-fn within(place: &Scalar, half: &Scalar) -> Scalar {
-    step(less(half.clone(), size(place.clone())))
-}
-
 struct Pair<'s> {
     capsule: &'s Shape,
     axis: Vector,
@@ -154,12 +149,15 @@ impl<'s> Pair<'s> {
         step(less(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
     }
 
-    /// How far a component of w may be on the other side of zero: times the distance it is an angle. It is small, or, where
-    /// `free` is 1 and not 0, large.
-    fn turn(&self, near: &Near, free: Scalar) -> Scalar {
-        let [fine, whole] = [FINE, TURN].map(|(n, d)| ratio(n, d));
-        let angle = all([product([free.clone(), whole]), product([less(integer(1), free), fine])]);
-        product([angle, near.distance.clone()])
+    /// How far a component of w may be on the other side of zero: times the distance it is an angle.
+    fn whole_turn(&self, near: &Near) -> Scalar {
+        product([ratio(TURN.0, TURN.1), near.distance.clone()])
+    }
+
+    /// The same at a place that is so far from where a neighbour takes over.
+    fn turn(&self, near: &Near, from_neighbour: Scalar) -> Scalar {
+        let fine = product([ratio(FINE.0, FINE.1), near.distance.clone()]);
+        lesser(self.whole_turn(near), all([fine, greater(from_neighbour, integer(0))]))
     }
 
     /// The contact of an end, on this side of the middle: a ball on the box. It is the nearest place of the segment
@@ -177,19 +175,23 @@ impl<'s> Pair<'s> {
             less(self.d[i].clone(), held)
         });
         let beyond: Vec<Scalar> = (self.half.iter().zip(&place))
-            .map(|(half, place)| shared.scalar(step(less(size(place.clone()), half.clone())), "whether an end is beyond a face"))
+            .map(|(half, place)| shared.scalar(less(size(place.clone()), half.clone()), "place of an end beyond a face"))
             .collect();
-        let both = |k: usize, l: usize| product([beyond[k].clone(), beyond[l].clone()]);
+        let both = |k: usize, l: usize| lesser(beyond[k].clone(), beyond[l].clone());
         let taken_over = match self.half.len() {
             3 => (0..3)
-                .map(|j| product([both(others(j)[0], others(j)[1]), self.crosses(j)]))
+                .map(|j| {
+                    let crosses = self.crosses(j);
+                    let nothing = product([less(crosses.clone(), integer(1)), self.extent.clone()]);
+                    all([product([crosses, both(others(j)[0], others(j)[1])]), nothing])
+                })
                 .reduce(greater)
                 .unwrap_or_else(|| integer(0)),
             _ => both(0, 1),
         };
         let near = self.near(t, &from, shared);
         let back = signed(side, self.along(&near));
-        let validity = less(self.turn(&near, less(integer(1), taken_over)), back);
+        let validity = less(self.turn(&near, opposite_of(taken_over)), back);
         let touch = self.touch(&near, vec![validity], shared);
         // of a segment that passes through the box
         let overlap = all([self.apart.clone(), self.share(OVERLAPS)]);
@@ -214,16 +216,16 @@ impl<'s> Pair<'s> {
         let guess = shared.scalar(between_bounds(free, &self.half_length), "place on the segment");
         let u = all([self.d[j].clone(), product([guess, a(j)])]);
         let u = shared.scalar(u, "place on the line of an edge");
-        let inside_edge = within(&u, &self.half[j]);
+        let inside_edge = less(self.half[j].clone(), size(u.clone()));
         let u = shared.scalar(between_bounds(u, &self.half[j]), "place on an edge");
         from[j] = shared.scalar(less(self.d[j].clone(), u), "distance from a place on an edge");
         let t = opposite_of(all([product([from[j].clone(), a(j)]), across]));
         let t = shared.scalar(t, "place on the line of the segment");
-        let inside_both = product([inside_edge, within(&t, &self.half_length)]);
+        let inside_both = lesser(inside_edge, less(self.half_length.clone(), size(t.clone())));
         let t = shared.scalar(between_bounds(t, &self.half_length), "place on the segment");
         let near = self.near(t, &from, shared);
         let mut bounds = self.is_inside(&near);
-        bounds.push(less(self.turn(&near, integer(1)), size(near.w[j].clone())));
+        bounds.push(less(self.whole_turn(&near), size(near.w[j].clone())));
         // where both are inside, and the segment lies on a face, nothing takes over
         let turn = shared.scalar(self.turn(&near, inside_both), "turn of a normal");
         bounds.extend([(k, sides[0]), (l, sides[1])].map(|(i, side)| all([signed(side, near.w[i].clone()), turn.clone()])));
@@ -241,7 +243,7 @@ impl<'s> Pair<'s> {
         let from = from.map(|w| shared.scalar(w, "distance from a vertex"));
         let t = opposite_of(all((0..3).map(|i| product([from[i].clone(), self.a[i].clone()]))));
         let t = shared.scalar(t, "place on the line of the segment");
-        let inside = within(&t, &self.half_length);
+        let inside = less(self.half_length.clone(), size(t.clone()));
         let t = shared.scalar(between_bounds(t, &self.half_length), "place on the segment");
         let near = self.near(t, &from, shared);
         let mut bounds = self.is_inside(&near);
@@ -260,7 +262,7 @@ impl<'s> Pair<'s> {
 
     /// Between the ends w is across the segment.
     fn is_inside(&self, near: &Near) -> Vec<Scalar> {
-        vec![less(self.turn(near, integer(1)), size(self.along(near)))]
+        vec![less(self.whole_turn(near), size(self.along(near)))]
     }
 
     fn share(&self, (n, d): (i64, i64)) -> Scalar {
