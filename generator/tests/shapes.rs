@@ -519,10 +519,8 @@ fn capsules_on_boxes() {
     while seen.iter().sum::<usize>() < POSES {
         let state = random_state(&mut random, &m);
         let pose = pose(&m, &state);
-        let segment = [
-            along(sub3(pose.at[0], pose.at[1]), &pose.axes[1]),
-            along(pose.axes[0][0], &pose.axes[1]),
-        ];
+        let segment =
+            [along(sub3(pose.at[0], pose.at[1]), &pose.axes[1]), along(pose.axes[0][0], &pose.axes[1])];
         if pierces(segment, 0.5, half) {
             // an end within the box has no direction, which is an error
             assert!(said(&m, &state).is_none_or(|found| found.iter().any(|one| one.gap < 0.0)), "{state:?}");
@@ -548,7 +546,8 @@ fn capsules_on_boxes() {
         let views = Views::at(&m, &state).unwrap();
         let scale = 1.0 + state.speeds.iter().fold(0.0_f64, |s, u| s.max(u.abs()));
         for (contact, one) in m.contacts.iter().zip(&found) {
-            let scalar = |of: &Option<_>| of.as_ref().map(|of| views.now.scalar(of, Level::Geometry).unwrap());
+            let scalar =
+                |of: &Option<_>| of.as_ref().map(|of| views.now.scalar(of, Level::Geometry).unwrap());
             if scalar(&contact.validity).is_some_and(|validity| validity.re < 1e-9) {
                 continue;
             }

@@ -67,7 +67,10 @@ impl Transition<'_> {
     /// Handles a contact that has come to its face from the side: it begins if its normal velocity is zero.
     pub(crate) fn enter(&mut self, contact: usize) -> Result<(), SimulationError> {
         let gap = self.mechanism.gap(contact, &self.here()).map_err(|e| self.failure(Failure::State(e)))?;
-        if gap.is_some_and(|gap| gap <= self.low()) && self.keeps_height(contact)? && !self.is_held(contact)? {
+        if gap.is_some_and(|gap| gap <= self.low())
+            && self.keeps_height(contact)?
+            && !self.is_held(contact)?
+        {
             let was = self.front.phases.clone();
             let closed = |other: usize| other == contact || was[other].is_closed();
             let mut candidates: Vec<usize> = (0..was.len()).filter(|&other| closed(other)).collect();
@@ -139,7 +142,8 @@ impl Transition<'_> {
 
     /// A closed contact that is at the boundary of its face, if there is one.
     pub(crate) fn at_its_end(&self) -> Result<Option<usize>, SimulationError> {
-        for contact in self.closed().iter().map(|closed| closed.contact).filter(|&contact| self.ends(contact)) {
+        for contact in self.closed().iter().map(|closed| closed.contact).filter(|&contact| self.ends(contact))
+        {
             let validity = self.validity(contact, &self.here());
             if validity.map_err(|error| self.failure(Failure::State(error)))? <= self.low() {
                 return Ok(Some(contact));

@@ -1,4 +1,4 @@
-//! Emits contacts that have no methods of their own: those of two boxes, of which a pair has dozens. The trait reaches
+//! Emits contacts that have no methods of their own: those of edges, as of two boxes, of which a pair has dozens. The trait reaches
 //! them by number.
 //!
 //! Gaps and velocities are those of [`super::in_one_pass`]; one routine gives everything else, in the same form.

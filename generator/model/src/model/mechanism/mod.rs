@@ -424,7 +424,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether it is one of the dozens of a pair of boxes: these have no methods and no derivatives of their
+    /// Whether it is one of the dozens of a pair with edges, such as two boxes: these have no methods and no derivatives of their
     /// own, and generated modules reach them by number.
     pub fn is_one_of_many(&self) -> bool {
         self.tangent.is_some()

@@ -96,8 +96,9 @@ impl<'s> BoxPair<'s> {
         let half = shapes.map(|shape| [0, 1, 2].map(|i| shape.sizes.get(i).map_or(integer(0), half)));
         let extent = shared.scalar(all(half.iter().flatten().cloned()), "extent");
         let d = first.at.from(&second.at);
-        let cosines: [[Scalar; 3]; 3] =
-            std::array::from_fn(|i| std::array::from_fn(|j| shared.scalar(dot(&axes[0][i], &axes[1][j]), "cosine")));
+        let cosines: [[Scalar; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| shared.scalar(dot(&axes[0][i], &axes[1][j]), "cosine"))
+        });
         let sizes: [[Scalar; 3]; 3] = std::array::from_fn(|i| {
             std::array::from_fn(|j| shared.scalar(size(cosines[i][j].clone()), "size of a cosine"))
         });
@@ -130,8 +131,8 @@ impl<'s> BoxPair<'s> {
                 root(greater(square_of.clone(), square(ratio(PARALLEL.0, PARALLEL.1)))),
                 "sine of edges that are not parallel",
             );
-            let angle =
-                shared.scalar(root(greater(square_of.clone(), ratio(NO_ANGLE.0, NO_ANGLE.1))), "sine of edges");
+            let angle = shared
+                .scalar(root(greater(square_of.clone(), ratio(NO_ANGLE.0, NO_ANGLE.1))), "sine of edges");
             sines[0][i].push(angle.clone());
             sines[1][j].push(angle);
             let apart = shared.scalar(
@@ -146,13 +147,16 @@ impl<'s> BoxPair<'s> {
             ]);
             let distance = quotient(less(size(apart.clone()), reach), sine.clone(), at);
             let distance = shared.scalar(distance, "distance across edges");
-            let crossed = shared.scalar(crossed(square_of.clone(), &extent), "whether edges are not parallel");
+            let crossed =
+                shared.scalar(crossed(square_of.clone(), &extent), "whether edges are not parallel");
             known.push(lesser(distance.clone(), crossed));
             distances.push(distance);
             let turned = shared.scalar(sign(apart.clone()), "side of edges");
             let way = |sign_of: i64, c: Scalar| signed(sign_of, product([turned.clone(), sign(c)]));
-            let of_first = nearest_edges([way(1, c(l, j)), way(-1, c(k, j))], [&sizes[l][j], &sizes[k][j]], shared);
-            let of_second = nearest_edges([way(1, c(i, o)), way(-1, c(i, m))], [&sizes[i][o], &sizes[i][m]], shared);
+            let of_first =
+                nearest_edges([way(1, c(l, j)), way(-1, c(k, j))], [&sizes[l][j], &sizes[k][j]], shared);
+            let of_second =
+                nearest_edges([way(1, c(i, o)), way(-1, c(i, m))], [&sizes[i][o], &sizes[i][m]], shared);
             let part =
                 |sign: i64, c: Scalar| quotient(signed(sign, product([turned.clone(), c])), sine.clone(), at);
             let mut components = [integer(0), integer(0), integer(0)];
@@ -189,8 +193,8 @@ impl<'s> BoxPair<'s> {
                 let is_parallel = step(less(ratio(PARALLEL.0, PARALLEL.1), angle.clone()));
                 shared.scalar(product([is_parallel, angle, extent.clone()]), "reach of parallel edges")
             });
-            let out =
-                [0, 1, 2].map(|i| shared.scalar(product([across[i].clone(), sides[i].clone()]), "normal of a face"));
+            let out = [0, 1, 2]
+                .map(|i| shared.scalar(product([across[i].clone(), sides[i].clone()]), "normal of a face"));
             let turned = [across[2].clone(), across[0].clone(), across[1].clone()];
             Side {
                 frame: frames[body],

@@ -97,17 +97,16 @@ impl<'s> Pair<'s> {
     fn separation(&self, at: Span) -> Scalar {
         let flat = self.half.len() == 2;
         let along = (0..self.half.len()).map(|i| {
-            let reach = all([self.half[i].clone(), product([self.half_length.clone(), size(self.a[i].clone())])]);
+            let reach =
+                all([self.half[i].clone(), product([self.half_length.clone(), size(self.a[i].clone())])]);
             less(size(self.d[i].clone()), reach)
         });
         let edges = if flat { 2..3 } else { 0..3 };
         let across = edges.map(|j| {
             let [k, l] = others(j);
             let component = |i: usize| self.a[i].clone();
-            let middles = less(
-                product([self.d[k].clone(), component(l)]),
-                product([self.d[l].clone(), component(k)]),
-            );
+            let middles =
+                less(product([self.d[k].clone(), component(l)]), product([self.d[l].clone(), component(k)]));
             let reach = all([
                 product([self.half[k].clone(), size(component(l))]),
                 product([self.half[l].clone(), size(component(k))]),
@@ -175,7 +174,9 @@ impl<'s> Pair<'s> {
             less(self.d[i].clone(), held)
         });
         let beyond: Vec<Scalar> = (self.half.iter().zip(&place))
-            .map(|(half, place)| shared.scalar(less(size(place.clone()), half.clone()), "place of an end beyond a face"))
+            .map(|(half, place)| {
+                shared.scalar(less(size(place.clone()), half.clone()), "place of an end beyond a face")
+            })
             .collect();
         let both = |k: usize, l: usize| lesser(beyond[k].clone(), beyond[l].clone());
         let taken_over = match self.half.len() {
@@ -228,7 +229,10 @@ impl<'s> Pair<'s> {
         bounds.push(less(self.whole_turn(&near), size(near.w[j].clone())));
         // where both are inside, and the segment lies on a face, nothing takes over
         let turn = shared.scalar(self.turn(&near, inside_both), "turn of a normal");
-        bounds.extend([(k, sides[0]), (l, sides[1])].map(|(i, side)| all([signed(side, near.w[i].clone()), turn.clone()])));
+        bounds.extend(
+            [(k, sides[0]), (l, sides[1])]
+                .map(|(i, side)| all([signed(side, near.w[i].clone()), turn.clone()])),
+        );
         bounds.push(crossed(self.squared_sine(j), &self.radius));
         self.one_of_many(&near, bounds, shared)
     }

@@ -39,7 +39,11 @@ pub fn least(bounds: Vec<Scalar>) -> Scalar {
 /// On which sides of the middle, along two axes of a box, the two edges along the third are that can be nearest to
 /// what is beyond them along a normal: `support` has the signs of the normal's two components, `components` their
 /// sizes. Both edges bound the face that is most across the normal; the first has equal signs, the second has not.
-pub fn nearest_edges(support: [Scalar; 2], components: [&Scalar; 2], shared: &mut Shared<'_>) -> [[Scalar; 2]; 2] {
+pub fn nearest_edges(
+    support: [Scalar; 2],
+    components: [&Scalar; 2],
+    shared: &mut Shared<'_>,
+) -> [[Scalar; 2]; 2] {
     let steeper = sign(less(components[0].clone(), components[1].clone()));
     let steeper = shared.scalar(steeper, "which component across edges is greater");
     let lead = all([
