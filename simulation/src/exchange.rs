@@ -354,10 +354,10 @@ impl Transition<'_> {
                     Phase::Open(leaving) => {
                         let gap = self.mechanism.gap(index, state)?.unwrap_or(1.0);
                         match leaving {
+                            // A closed contact holds its place.
+                            Leaving::Apart | Leaving::Near if self.is_held(index).unwrap_or(false) => 1.0,
                             // A contact that comes along the surface of its face has a gap of rounding errors
                             // only.
-                            // Its place is held by a closed contact.
-                            Leaving::Apart | Leaving::Near if self.is_held(index).unwrap_or(false) => 1.0,
                             Leaving::Apart | Leaving::Near if self.ends(index) => {
                                 (gap - self.low()).max(-self.validity(index, state)?)
                             }

@@ -35,7 +35,7 @@ pub struct Simulation<'m> {
     surfaces: Vec<Option<Pair>>,
     start: f64,
     pub(crate) front: Front,
-    /// the steps that led to the front since it was last moved, and the modes during each
+    /// the steps of the last transition, the last of which ends at the front, and the modes during each
     pub(crate) steps: Vec<(Step, Modes)>,
     /// events that have not been returned yet
     pub(crate) queue: VecDeque<Event>,

@@ -392,11 +392,12 @@ impl Transition<'_> {
                 contact,
                 ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. },
             )) => self.jams(contact),
-            // Two closed contacts may have been the same up to here: the one that ends makes way for the other.
-            Some(failure) => match self.at_its_end()? {
-                Some(contact) if matches!(failure, Failure::NoForces) => self.leave(contact),
-                _ => Err(self.failure(failure)),
+            // Two closed contacts may have coincided up to here: the one that is at its end makes way for the other.
+            Some(Failure::NoForces) => match self.at_its_end()? {
+                Some(contact) => self.leave(contact),
+                None => Err(self.failure(Failure::NoForces)),
             },
+            Some(failure) => Err(self.failure(failure)),
             None => match (self.singular_here(&self.closed()), self.turns_into_jam()?) {
                 (Some(contact), _) => self.end_at(contact),
                 (None, Some(contact)) => self.impact_without_collision(contact),

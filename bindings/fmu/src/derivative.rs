@@ -13,13 +13,13 @@ use crate::values::Values;
 
 /// The step, relative to the size of the variable or 1.
 const STEP: f64 = 1e-3;
-/// Each further step is this part of the one before, and there are so many.
+/// Each further step is this part of the one before; at most this many are tried.
 const SHORTER: f64 = 0.125;
 const STEPS: usize = 5;
-/// Derivatives that agree to this part of their size, or of 1, are accepted at once; those that do not agree to the second
-/// are none.
+/// Derivatives over two steps that agree to this part of their size, or of 1, are accepted at once; the call is refused
+/// if none agree to [`DIFFER`].
 const AGREE: f64 = 1e-9;
-const DIFFER: f64 = 1e-4;
+const DIFFER: f64 = 1e-6;
 
 /// The derivatives of `unknowns` along a direction that changes each of `knowns` by its seed.
 ///

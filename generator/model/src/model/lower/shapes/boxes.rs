@@ -15,6 +15,13 @@ use crate::span::Span;
 /// The number of contacts of two boxes: 8 vertices of each, and four pairs of edges for each of the 9 pairs of axes.
 pub const CONTACTS: usize = 8 + 8 + 9 * 4;
 
+/// Shares of the extent of both boxes: by how much a vertex may be beyond the end of a face, and by how much the
+/// crossing of two edges must be within both, and a vertex of the second box from a corner of the first.
+const REACH: (i64, i64) = (4, 1_000_000_000);
+const WITHIN: (i64, i64) = (1, 1_000_000_000);
+/// By how much the boxes must overlap across a face, and by how much the height of a crossing may be less than the
+/// distance of the boxes.
+const OVERLAP: (i64, i64) = (8, 1_000_000_000);
 /// Below this square a sine is zero, so that its root has a derivative.
 const NO_ANGLE: (i64, i64) = (1, 1_000_000_000_000_000_000);
 
@@ -35,6 +42,25 @@ pub fn between(first: &Shape, second: &Shape, definitions: &mut Vec<Definition>,
 
 fn pairs_of_axes() -> impl Iterator<Item = (usize, usize)> {
     (0..3).flat_map(|i| (0..3).map(move |j| (i, j)))
+}
+
+/// On which sides of the middle, along two axes of a box, the two edges along the third are that can be nearest to
+/// what is beyond them along a normal: `support` has the signs of the normal's two components, `components` their
+/// sizes. Both edges bound the face that is most across the normal; the first has equal signs, the second has not.
+fn nearest_edges(
+    support: [Scalar; 2],
+    components: [&Scalar; 2],
+    shared: &mut Shared<'_>,
+) -> [[Scalar; 2]; 2] {
+    let steeper = sign(less(components[0].clone(), components[1].clone()));
+    let steeper = shared.scalar(steeper, "which component across edges is greater");
+    let lead = all([
+        product([step(steeper.clone()), support[0].clone()]),
+        product([less(integer(1), step(steeper.clone())), support[1].clone()]),
+    ]);
+    let lead = shared.scalar(lead, "side of the nearest edge");
+    let other = shared.scalar(product([lead.clone(), steeper]), "side of the edge beside it");
+    [[lead.clone(), lead], [other.clone(), opposite_of(other)]]
 }
 
 /// One of two boxes, as the vertices of the other see it.

@@ -21,10 +21,11 @@ pub const ON_BOX: usize = 2 + 12 + 8;
 /// The number of contacts on a rectangle: two ends, four corners.
 pub const ON_RECTANGLE: usize = 2 + 4;
 
-/// The angle, rad, by which a normal may leave those that a feature has, before the contact ends, where place and normal
-/// are then those of the neighbour that takes over, and where none takes over: far above the rounding of places.
+/// The angle, rad, by which a normal may turn beyond the border of a contact before the contact ends. It is far above the
+/// rounding of places, and does no harm: beyond the border the contact has the place and the normal of the neighbour that
+/// takes over, or no neighbour takes over.
 const TURN: (i64, i64) = (1, 1_000_000);
-/// The same where the neighbour that takes over has other places and normals there.
+/// The same at borders beyond which the neighbour has another place and normal.
 const FINE: (i64, i64) = (4, 10_000_000_000);
 
 /// The contacts: ends of the capsule, then edges of the box along x, y and z, then its vertices.
@@ -148,12 +149,13 @@ impl<'s> Pair<'s> {
         step(less(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
     }
 
-    /// How far a component of w may be on the other side of zero: times the distance it is an angle.
+    /// How far a component of w may be on the other side of zero at most: an angle times the distance.
     fn whole_turn(&self, near: &Near) -> Scalar {
         product([ratio(TURN.0, TURN.1), near.distance.clone()])
     }
 
-    /// The same at a place that is so far from where a neighbour takes over.
+    /// The same at a place with this distance from the border to a neighbour with another normal. It is continuous there,
+    /// since a zero of a validity that jumps would not be found.
     fn turn(&self, near: &Near, from_neighbour: Scalar) -> Scalar {
         let fine = product([ratio(FINE.0, FINE.1), near.distance.clone()]);
         lesser(self.whole_turn(near), all([fine, greater(from_neighbour, integer(0))]))
@@ -194,9 +196,10 @@ impl<'s> Pair<'s> {
         let back = signed(side, self.along(&near));
         let validity = less(self.turn(&near, opposite_of(taken_over)), back);
         let touch = self.touch(&near, vec![validity], shared);
-        // of a segment that passes through the box
-        let overlap = all([self.apart.clone(), self.share(OVERLAPS)]);
-        Touch { gap: lesser(touch.gap, product([integer(STEEP), overlap])), ..touch }
+        // a segment that passes through the box is deeper than its distance, which is negative, tells
+        let passes = product([integer(STEEP), all([self.apart.clone(), self.share(OVERLAPS)])]);
+        let depth = greater(passes, less(self.apart.clone(), self.radius.clone()));
+        Touch { gap: lesser(touch.gap, depth), ..touch }
     }
 
     /// The contact with an edge along the axis j, which is on these sides of the middle along the two others.
