@@ -215,6 +215,37 @@ fn programs_in_c_follow_motions() {
     } else {
         println!("no python3 here: motion.py was not tried");
     }
+
+    // A function of MATLAB and Octave, as the documents show it: the accelerations of the twenty states.
+    let function = root().join("generator/cli/tests/export/planar_double_pendulum_rates.c");
+    assert!(documents.contains(&std::fs::read_to_string(&function).unwrap()));
+    let answers = |program: &str| {
+        Command::new(program).arg("--version").output().is_ok_and(|told| told.status.success())
+    };
+    if answers("octave-cli") && answers("mkoctfile") {
+        let mut compiler = Command::new("mkoctfile");
+        output(compiler.args(["--mex", "-Iinclude"]).arg(&function).arg(&library), &exported);
+        let states: String = table.iter().map(|row| format!("{};", row[..4].join(" "))).collect();
+        let program = format!(
+            "for state = [{states}]', printf(\"%.17g %.17g\\n\", planar_double_pendulum_rates(state(1:2), state(3:4))), end\n\
+             for bad = {{{{[1 2 3], [0 0]}}, {{[nan 0], [0 0]}}, {{[1 2]}}}}, try, planar_double_pendulum_rates(bad{{1}}{{:}}), \
+             catch mistake, disp(['mistake: ' mistake.message]), end, end"
+        );
+        let mut octave = Command::new("octave-cli");
+        let said = output(octave.args(["--no-init-file", "--eval", &program]), &exported);
+        let said = String::from_utf8(said.stdout).unwrap();
+        let (states, mistakes): (Vec<&str>, Vec<&str>) =
+            said.lines().partition(|line| !line.starts_with("mistake"));
+        let found: Vec<Vec<f64>> = states
+            .iter()
+            .map(|line| line.split_whitespace().map(|number| number.parse().unwrap()).collect())
+            .collect();
+        assert_eq!(found, expected.iter().map(|row| row[..2].to_vec()).collect::<Vec<_>>());
+        let of = ["q and u are", "not finite", "the call is"];
+        assert!(mistakes.len() == 3 && mistakes.iter().zip(of).all(|(said, of)| said.contains(of)), "{said}");
+    } else {
+        println!("no Octave with mkoctfile here: planar_double_pendulum_rates.c was not tried");
+    }
 }
 
 /// Bad input has the errors that every door has: the status is that of the cause, and motions have the words.
