@@ -192,6 +192,11 @@ impl Motion<'_> {
         self.evaluated(t, y, guess.map(|forces| &forces.lambda), Wanted::Centre)
     }
 
+    /// The same, but if there are many forces of these modes, any of them.
+    pub fn estimate(&self, t: f64, y: &[f64]) -> Result<Evaluation, Failure> {
+        self.evaluated(t, y, None, Wanted::Any)
+    }
+
     /// Writes only the rates to `rates`; `room` is the work space of this motion.
     pub fn rates(&self, t: f64, y: &[f64], rates: &mut [f64], room: &mut Room) -> Result<(), Failure> {
         self.write_rates(t, y, (None, Wanted::Motion), rates, room).map(|_| ())

@@ -4,6 +4,7 @@ use hodograph::{CollisionError, CollisionOutcome, ComponentKind, State, Surface}
 
 use crate::closed_contacts::{ClosedContacts, free_acceleration};
 use crate::motion::Failure;
+use crate::phase::Closed;
 use crate::transition::Transition;
 use crate::{ErrorKind, Share, SimulationError};
 
@@ -40,6 +41,10 @@ impl Hit {
         }
     }
 }
+
+/// Forces of other contacts accelerate one by at most this many times the greatest acceleration without
+/// them, in the rule of chatter. Where they do more, a contact bounces once more.
+const STRONG: f64 = 1e4;
 
 impl Transition<'_> {
     /// The impact of these contacts; `faded` ones have no restitution.
@@ -99,7 +104,7 @@ impl Transition<'_> {
         before: f64,
         rebound: f64,
     ) -> Result<Option<f64>, SimulationError> {
-        let pull = self.pull(contact, speeds)?;
+        let pull = self.pull(contact, speeds, rebound)?;
         let low = self.rises_little(pull, rebound);
         let pair = self.pair(contact);
         Ok(if low { pair.and_then(|pair| pair.bounces_for(before, rebound, -pull)) } else { None })
@@ -112,7 +117,7 @@ impl Transition<'_> {
         speeds: &[f64],
         rebound: f64,
     ) -> Result<bool, SimulationError> {
-        Ok(self.rises_little(self.pull(contact, speeds)?, rebound))
+        Ok(self.rises_little(self.pull(contact, speeds, rebound)?, rebound))
     }
 
     fn rises_little(&self, pull: f64, rebound: f64) -> bool {
@@ -131,8 +136,9 @@ impl Transition<'_> {
     }
 
     /// The normal acceleration of a contact without its own force, while the other lasting contacts keep
-    /// their modes.
-    fn pull(&self, contact: usize, speeds: &[f64]) -> Result<f64, SimulationError> {
+    /// their modes. Their forces count only if such an acceleration can matter to a contact that separates
+    /// with the speed `rebound`.
+    fn pull(&self, contact: usize, speeds: &[f64], rebound: f64) -> Result<f64, SimulationError> {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let mut y = self.front.y.clone();
         y[n..n + speeds.len()].copy_from_slice(speeds);
@@ -140,11 +146,19 @@ impl Transition<'_> {
         let state = State { time: self.front.t, coordinates: &y[..n], speeds, inputs: &inputs };
         let fault = |error| self.failure(Failure::State(error));
         let beta = free_acceleration(self.mechanism.mechanism, contact, &state).map_err(fault)?.x;
-        let others: Vec<_> = self.closed().into_iter().filter(|closed| closed.contact != contact).collect();
+        // After an impact directions of slip are those of the velocities, not those of the last step.
+        let direct = |closed| Closed { omega: None, turning: None, ..closed };
+        let others: Vec<_> =
+            self.closed().into_iter().filter(|closed| closed.contact != contact).map(direct).collect();
         if others.is_empty() {
             return Ok(beta);
         }
-        let Ok(evaluation) = self.motion(&others).evaluate(self.front.t, &y) else { return Ok(beta) };
+        let places: Vec<usize> = others.iter().map(|closed| closed.contact).collect();
+        let free = ClosedContacts::new(self.mechanism, &state, &places, true).map_err(fault)?.beta.amax();
+        if rebound * rebound > 2.0 * self.options.absolute_tolerance * STRONG * free.max(beta.abs()) {
+            return Ok(beta);
+        }
+        let Ok(evaluation) = self.motion(&others).estimate(self.front.t, &y) else { return Ok(beta) };
         let Some(forces) = evaluation.forces else { return Ok(beta) };
         let own = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
         let rates = forces.rates(&evaluation.support);

@@ -400,7 +400,8 @@ fn the_models_have_contacts() {
 fn every_model() {
     let seeds = drops(0..1);
     let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
-    for name in MODELS {
+    let only = std::env::var("HODOGRAPH_MODEL").ok();
+    for name in MODELS.into_iter().filter(|name| only.as_deref().is_none_or(|only| only == *name)) {
         let mechanism = model(name);
         let began = Instant::now();
         for &seed in &seeds {

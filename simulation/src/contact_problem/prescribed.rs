@@ -89,6 +89,8 @@ pub(crate) enum Wanted {
     Decision,
     /// Any forces if all give the same motion, that is, if no contact slips.
     Motion,
+    /// Any forces of these modes.
+    Any,
 }
 
 /// Like [`with_modes_near`], with a choice of forces.
@@ -126,7 +128,7 @@ pub(crate) fn found(
     unknowns.consistent(problem, &matrix, &x, &left)?;
     let unique = elimination.rank == m;
     let slides = modes.iter().any(|mode| matches!(mode, Mode::Slide(_)));
-    if wanted == Wanted::Motion && (unique || !slides) {
+    if wanted == Wanted::Any || wanted == Wanted::Motion && (unique || !slides) {
         let (force, acceleration) = unknowns.motion(problem, &x);
         let (f, jams) = unknowns.jam(problem, &elimination);
         return Ok(Admissible { force, acceleration, margin: 0.0, least: None, unique, f, jams });
