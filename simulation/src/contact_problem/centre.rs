@@ -80,21 +80,29 @@ struct Barrier {
     hessian: DMatrix<f64>,
 }
 
-/// The barrier of the cones reduced by `s`; the last variable is s.
-fn barrier(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s: f64) -> Barrier {
-    let p = basis.ncols();
+/// The barrier of the cones reduced by `s`; the last variable is s. Of the Hessian the lower triangle is
+/// computed, which is what its factorisation reads. `rows` is the transposed basis.
+fn barrier(cones: &[Cone], rows: &DMatrix<f64>, load: f64, x: &DVector<f64>, s: f64) -> Barrier {
+    let p = rows.nrows();
     let mut by_x = DVector::zeros(x.len());
     // Rows of the Hessian with respect to x, times the basis; added contact by contact.
     let mut gradient = DVector::zeros(p + 1);
     let mut hessian = DMatrix::zeros(p + 1, p + 1);
+    let mut row = Vector::zeros(p + 1);
+    let mut add_square = |factor: f64, parts: &[(usize, f64)], by_s: f64| {
+        fill_row(&mut row, rows, parts, by_s);
+        for (j, column) in hessian.as_mut_slice().chunks_exact_mut(p + 1).enumerate() {
+            let scaled = factor * row[j];
+            column[j..].iter_mut().zip(&row[j..]).for_each(|(entry, own)| *entry += scaled * own);
+        }
+    };
     let square = 1.0 / (load * load);
     for cone in cones {
         let n = x[cone.normal] - s;
         let Some((t, r, factor)) = cone.tangential else {
             by_x[cone.normal] -= 1.0 / n;
             gradient[p] += 1.0 / n;
-            let row = row_of(basis, &[(cone.normal, 1.0 / n)], -1.0 / n);
-            add_square(&mut hessian, 1.0, &row);
+            add_square(1.0, &[(cone.normal, 1.0 / n)], -1.0 / n);
             continue;
         };
         let (ut, us) = (factor * x[t], factor * x[r]);
@@ -106,50 +114,40 @@ fn barrier(cones: &[Cone], basis: &DMatrix<f64>, load: f64, x: &DVector<f64>, s:
         by_x[t] += factor * dt;
         by_x[r] += factor * ds;
         gradient[p] -= dn;
-        let row = row_of(basis, &[(cone.normal, dn), (t, factor * dt), (r, factor * ds)], -dn);
-        add_square(&mut hessian, 1.0, &row);
-        let row = row_of(basis, &[(cone.normal, 1.0)], -1.0);
-        add_square(&mut hessian, -2.0 / q, &row);
+        add_square(1.0, &[(cone.normal, dn), (t, factor * dt), (r, factor * ds)], -dn);
+        add_square(-2.0 / q, &[(cone.normal, 1.0)], -1.0);
         for axis in [t, r] {
-            let row = row_of(basis, &[(axis, factor)], 0.0);
-            add_square(&mut hessian, 2.0 / q, &row);
+            add_square(2.0 / q, &[(axis, factor)], 0.0);
         }
     }
     by_x.axpy(square, x, 1.0);
-    gradient.rows_mut(0, p).copy_from(&basis.tr_mul(&by_x));
+    for (along, row) in by_x.iter().zip(rows.as_slice().chunks_exact(p.max(1))) {
+        gradient.as_mut_slice()[..p].iter_mut().zip(row).for_each(|(sum, part)| *sum += along * part);
+    }
     for i in 0..p {
         hessian[(i, i)] += square;
     }
     Barrier { gradient, hessian }
 }
 
-/// Adds factor times row row^T.
-fn add_square(hessian: &mut DMatrix<f64>, factor: f64, row: &[f64]) {
-    for (column, last) in hessian.as_mut_slice().chunks_exact_mut(row.len()).zip(row) {
-        let scaled = factor * last;
-        column.iter_mut().zip(row).for_each(|(entry, own)| *entry += scaled * own);
-    }
-}
-
 /// The derivative with respect to (y, s) of a sum of components of x and of s.
-fn row_of(basis: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) -> Vector {
-    let p = basis.ncols();
-    let mut row = Vector::zeros(p + 1);
+fn fill_row(row: &mut [f64], rows: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) {
+    let p = rows.nrows();
+    row[..p].fill(0.0);
     for &(place, factor) in parts {
-        for j in 0..p {
-            row[j] += factor * basis[(place, j)];
-        }
+        let own = &rows.as_slice()[place * p..][..p];
+        row.iter_mut().zip(own).for_each(|(sum, part)| *sum += factor * part);
     }
     row[p] = by_s;
-    row
 }
 
 /// Newton's method to the centre, from forces inside all cones.
 fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>, by: By) -> DVector<f64> {
     let p = basis.ncols();
+    let rows = basis.transpose();
     let newton = |x: &DVector<f64>| match by {
         By::Hessian => {
-            let Barrier { gradient, hessian } = barrier(cones, basis, load, x, 0.0);
+            let Barrier { gradient, hessian } = barrier(cones, &rows, load, x, 0.0);
             let right = -gradient.rows(0, p);
             let factors = hessian.view((0, 0), (p, p)).into_owned().cholesky()?;
             let step = factors.solve(&right);
@@ -183,12 +181,13 @@ fn enter(
     (decide, by): (bool, By),
 ) -> Result<DVector<f64>, DVector<f64>> {
     let p = basis.ncols();
+    let rows = basis.transpose();
     // Besides the barrier -weight s / load, and s below the load.
     let newton = |x: &DVector<f64>, s: f64, weight: f64| {
         let room = load - s;
         match by {
             By::Hessian => {
-                let Barrier { mut gradient, mut hessian } = barrier(cones, basis, load, x, s);
+                let Barrier { mut gradient, mut hessian } = barrier(cones, &rows, load, x, s);
                 gradient[p] += 1.0 / room - weight / load;
                 hessian[(p, p)] += 1.0 / (room * room);
                 let right = -gradient;
@@ -214,7 +213,8 @@ fn enter(
             let Some((step, length)) = newton(&x, s, weight) else { break };
             let change = basis * step.rows(0, p);
             let inside = |part: f64| {
-                let (next, slack) = (&x + &change * part, s + step[p] * part);
+                let (mut next, slack) = (x.clone(), s + step[p] * part);
+                next.axpy(part, &change, 1.0);
                 (least_reserve(cones, &next) > slack && slack < load).then_some((next, slack))
             };
             // Far from the path the step is as long as the cones allow, near it a full step.
