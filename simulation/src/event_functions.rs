@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Hold, JAM, margins};
+use crate::impacts::OWN;
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::smooth_parts::Guard;
@@ -111,7 +112,7 @@ impl Transition<'_> {
                 noise.push(match *leaving {
                     Leaving::Bounced => rate(),
                     Leaving::Lifted { risen, .. } if risen > 0.0 => h * rate(),
-                    Leaving::Lifted { .. } => rate(),
+                    Leaving::Lifted { .. } => rate() + self.left_at_lift_off(contact),
                     Leaving::Apart | Leaving::Near => self.rounding_of_gap(contact),
                 });
             }
@@ -203,6 +204,14 @@ impl Transition<'_> {
     fn rounding_of_rate(&self, contact: usize) -> f64 {
         let [all, normal] = self.rounding_of_velocity(contact);
         all.min(normal.max(FAINT * self.front.scales.slow))
+    }
+
+    /// The approach that projections leave of the normal velocity of a contact that lifts off here, which is
+    /// zero: at most [`OWN`] of the terms of its velocity.
+    pub(crate) fn left_at_lift_off(&self, contact: usize) -> f64 {
+        let approach = self.mechanism.contact_velocity(contact, &self.here()).map_or(0.0, |v| -v.x);
+        let terms = self.rounding_of_velocity(contact)[0] / (4.0 * f64::EPSILON);
+        if (0.0..=OWN * terms).contains(&approach) { approach } else { 0.0 }
     }
 
     /// Bounds of the rounding errors of the velocity of a contact and of its normal velocity: 4 eps of their

@@ -21,7 +21,7 @@ const APPROACH: f64 = 1e-12;
 /// errors.
 const ROUNDING: f64 = 1e-15;
 /// The part of the terms of a normal velocity that rounding and projections leave.
-const OWN: f64 = 1e-13;
+pub(crate) const OWN: f64 = 1e-13;
 /// Approaches slower than this, relative to the first one, have no restitution.
 const FADED: f64 = 1e-9;
 /// Largest number of impacts at one time.

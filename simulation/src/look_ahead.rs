@@ -114,10 +114,13 @@ impl Transition<'_> {
         self.correct()
     }
 
-    /// Whether contacts that have opened do not approach again.
+    /// Whether contacts that have opened do not approach again. A rate that projections have left here, where it
+    /// is zero, is not that of the motion.
     fn opened(&self, contacts: &[usize], step: &Step) -> Result<bool, SimulationError> {
         for &contact in contacts {
-            if !self.front.phases[contact].is_closed() && self.gap_at(step, contact)?.1 < 0.0 {
+            if !self.front.phases[contact].is_closed()
+                && self.gap_at(step, contact)?.1 < -self.left_at_lift_off(contact)
+            {
                 return Ok(false);
             }
         }
