@@ -7,7 +7,6 @@ use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Hold, JAM, margins};
-use crate::impacts::OWN;
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::smooth_parts::Guard;
@@ -24,6 +23,8 @@ const RISEN: f64 = 1e-11;
 pub(crate) const SIZE: f64 = 5e-3;
 /// The largest allowed rounding error of a closing gap, relative to the length of the problem.
 const HIDDEN: f64 = 1e-6;
+/// The part of the terms of a normal velocity that rounding and projections leave.
+pub(crate) const OWN: f64 = 1e-13;
 /// Relative to the smallest normal velocities that matter, this part is negligible.
 const FAINT: f64 = 1e-6;
 /// The normal acceleration of a separating contact may be negative by this part of its terms: it is zero up

@@ -7,7 +7,7 @@ use hodograph::{ComponentKind, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::{Along, ClosedContacts};
-use crate::event_functions::SIZE;
+use crate::event_functions::{OWN, SIZE};
 use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
@@ -20,8 +20,6 @@ const APPROACH: f64 = 1e-12;
 /// Normal velocities below this part of the greatest that the energy of the motion allows are rounding
 /// errors.
 const ROUNDING: f64 = 1e-15;
-/// The part of the terms of a normal velocity that rounding and projections leave.
-pub(crate) const OWN: f64 = 1e-13;
 /// Approaches slower than this, relative to the first one, have no restitution.
 const FADED: f64 = 1e-9;
 /// Largest number of impacts at one time.

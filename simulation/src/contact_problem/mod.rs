@@ -22,6 +22,7 @@ mod cone;
 mod directions;
 mod edge;
 mod enumerate;
+mod jam;
 mod linear;
 mod motion;
 mod natural_map;

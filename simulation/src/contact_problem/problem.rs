@@ -163,7 +163,7 @@ pub enum Unsolved {
     Jam {
         /// The contact that jams.
         contact: usize,
-        /// f of this contact alone, W_nn - mu W_nT d.
+        /// f of this contact alone, W_nn - mu W_nT d, or while the others keep their modes.
         f: f64,
     },
     /// No forces with an acceptable certificate were found.

@@ -9,6 +9,7 @@ use super::{
     certified::{Refused, attempt, with_certificate},
     edge::beyond,
     enumerate::enumerate,
+    jam::jam,
     motion::centred,
     near::near,
 };
@@ -37,31 +38,11 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
             if let Some(first) = enumerate(problem).into_iter().next() {
                 return Ok(first);
             }
-            Err(match jammed(problem) {
-                Some(contact) => Unsolved::Jam { contact, f: own_f(problem, contact).unwrap_or(0.0) },
-                None => Unsolved::NotFound { violation },
-            })
+            Err(jam(problem)
+                .map_or(Unsolved::NotFound { violation }, |(contact, f)| Unsolved::Jam { contact, f }))
         }
         Err(Refused { reason, .. }) => Err(reason),
     }
-}
-
-/// f of a sliding contact by itself.
-fn own_f(problem: &Problem<'_>, i: usize) -> Option<f64> {
-    let d = problem.slip[i]?;
-    let row = 3 * i;
-    Some(
-        problem.w[(row, row)]
-            - problem.mu[i] * (problem.w[(row, row + 1)] * d.x + problem.w[(row, row + 2)] * d.y),
-    )
-}
-
-/// The sliding contact with the least f, if that is not positive.
-fn jammed(problem: &Problem<'_>) -> Option<usize> {
-    let ratio = |i: usize| own_f(problem, i).map(|f| f / problem.w[(3 * i, 3 * i)]);
-    (0..problem.contacts())
-        .filter(|&i| ratio(i).is_some_and(|f| f <= 1e-6))
-        .min_by(|&a, &b| ratio(a).unwrap_or(1.0).total_cmp(&ratio(b).unwrap_or(1.0)))
 }
 
 /// Up to this number of contacts, rest is tried first, and the analytic centre of forces that are not unique
