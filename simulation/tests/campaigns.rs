@@ -89,8 +89,7 @@ fn campaign(family: &Family, usual: impl IntoIterator<Item = u64>) {
         };
         if let Some(wrong) = wrong {
             let names = end.names();
-            let last =
-                &names[names.len().saturating_sub(if std::env::var("DBG").is_ok() { 60 } else { 4 })..];
+            let last = &names[names.len().saturating_sub(4)..];
             println!("{} {seed}: {what}: {wrong}, after {last:?}", family.model);
             failures.push(seed);
         }
