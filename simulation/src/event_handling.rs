@@ -17,8 +17,9 @@ use crate::{EventKind, SimulationError};
 
 /// The step after an event is at most this many times as long as the part of the step before it.
 const AFTER: f64 = 10.0;
-/// The greatest number of events without progress in time.
-const CROWD: usize = 1000;
+/// The greatest number of events without progress in time, over the number of closed contacts; but at least as many as
+/// the second number.
+const CROWD: [usize; 2] = [400, 64];
 /// This number of events must advance the motion by [`ADVANCE`] of the time of the problem.
 const EVENTS: usize = 500;
 const ADVANCE: f64 = 1e-7;
@@ -234,14 +235,15 @@ impl Transition<'_> {
             self.front.crowd = 0;
         }
         self.front.crowd += 1;
-        if self.front.crowd > CROWD {
-            return Err(self.error(None, self.without_end(CROWD)));
+        let closed = self.front.phases.iter().filter(|phase| phase.is_closed()).count();
+        let most = (CROWD[0] / closed.max(1)).max(CROWD[1]);
+        if self.front.crowd > most {
+            return Err(self.error(None, self.without_end(most)));
         }
         let (count, since) = self.front.events;
         self.front.events = (count + 1, since);
         if count >= EVENTS {
-            // Events at one time are counted above.
-            if self.front.crowd < EVENTS && self.front.t - since < ADVANCE * self.front.scales.time {
+            if self.front.t - since < ADVANCE * self.front.scales.time {
                 return Err(self.error(None, self.without_end(EVENTS)));
             }
             self.front.events = (0, self.front.t);
