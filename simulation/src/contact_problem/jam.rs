@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     Mode, Problem, Solution,
-    certified::attempt,
+    certified::{ACCEPTED, attempt},
     enumerate::enumerate,
     prescribed::{Wanted, prescribed},
     problem::three,
@@ -51,9 +51,14 @@ fn f_with_others(problem: &Problem<'_>, i: usize) -> Option<f64> {
     let rest = Problem { w: &w, beta: &beta, mu: &mu, slip: &slip, noise: noise.as_ref() };
     let Solution { force, modes: others, .. } =
         attempt(&rest, None).ok().or_else(|| enumerate(&rest).into_iter().next())?;
-    let approach: f64 = problem.beta[3 * i]
-        + rows.iter().zip(force.iter()).map(|(&row, f)| problem.w[(3 * i, row)] * f).sum::<f64>();
-    if approach >= 0.0 {
+    let (mut approach, mut terms) = (problem.beta[3 * i], problem.beta[3 * i].abs());
+    for (&row, force) in rows.iter().zip(force.iter()) {
+        let part = problem.w[(3 * i, row)] * force;
+        approach += part;
+        terms += part.abs();
+    }
+    // Rounding is no approach.
+    if approach >= -(ACCEPTED * terms + problem.noise(3 * i)) {
         return None;
     }
     let mut modes = others;
