@@ -42,6 +42,7 @@ export const PARTS = [
       { file: "docs/benchmarks.md" },
       { file: "docs/validation.md" },
       { file: "docs/boards.md" },
+      { file: "docs/gpu.md" },
       { file: "docs/worst-case.md" },
       { file: "docs/singles.md" },
       { file: "docs/builds.md" },

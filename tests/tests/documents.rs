@@ -47,6 +47,25 @@ fn shown_models_are_accepted() {
     assert!(count >= 3, "{count} models");
 }
 
+/// Every page of `docs` stands in the book of the page and in the index.
+#[test]
+fn pages_are_in_the_book_and_in_the_index() {
+    let lists: Vec<(&str, String)> = ["playground/book/contents.js", "docs/index.md"]
+        .map(|list| (list, std::fs::read_to_string(root().join(list)).expect(list)))
+        .into();
+    let mut count = 0;
+    for entry in std::fs::read_dir(root().join("docs")).expect("a folder") {
+        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
+        if name.ends_with(".md") && name != "index.md" {
+            for (list, text) in &lists {
+                assert!(text.contains(&name), "docs/{name} is not in {list}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 20, "{count} pages");
+}
+
 /// All files of the repository with these names or extensions, but what is built.
 fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
