@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::failure::Failure;
+use crate::keys::Keys;
 use crate::models::{Model, shipped};
 use crate::run::Sweep;
 use crate::session::{Engine, Setup};
@@ -54,6 +55,9 @@ pub enum Command {
         /// [default: none]
         #[arg(long, value_name = "DIRECTORY")]
         files: Vec<PathBuf>,
+        /// a directory with the keys of the cluster: TLS on every connection, with certificates on both sides
+        #[arg(long, value_name = "DIRECTORY")]
+        tls: Option<PathBuf>,
     },
     /// Compute for a scheduler
     Executor {
@@ -75,6 +79,14 @@ pub enum Command {
         /// the directory for results until they are fetched
         #[arg(long, value_name = "DIRECTORY")]
         work: Option<PathBuf>,
+        /// a directory with the keys of the cluster: TLS on every connection, with certificates on both sides
+        #[arg(long, value_name = "DIRECTORY")]
+        tls: Option<PathBuf>,
+    },
+    /// Make the keys of a cluster, for --tls: every process of the cluster needs a copy
+    Keys {
+        /// the new directory
+        directory: PathBuf,
     },
 }
 
@@ -115,6 +127,9 @@ pub struct Run {
     /// run on the cluster of this scheduler
     #[arg(long, value_name = "HOST:PORT", conflicts_with = "in_process")]
     cluster: Option<String>,
+    /// a directory with the keys of the cluster
+    #[arg(long, value_name = "DIRECTORY", requires = "cluster")]
+    tls: Option<PathBuf>,
     /// run on a Ballista cluster inside this process
     #[arg(long)]
     in_process: bool,
@@ -179,7 +194,9 @@ impl Run {
     /// Arguments that do not fit together, files that cannot be read.
     pub fn sweep(self) -> Result<Result<Sweep, String>, Failure> {
         let engine = match (&self.cluster, self.in_process) {
-            (Some(address), _) => Engine::Cluster(address.clone()),
+            (Some(address), _) => {
+                Engine::Cluster(address.clone(), self.tls.as_deref().map(Keys::read).transpose()?)
+            }
             (None, true) => Engine::InProcess,
             (None, false) => Engine::Embedded,
         };

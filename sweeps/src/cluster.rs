@@ -4,23 +4,33 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use arrow_flight::flight_service_server::FlightServiceServer;
 use ballista_core::config::TaskSchedulingPolicy;
 use ballista_core::registry::BallistaFunctionRegistry;
+use ballista_core::serde::protobuf::scheduler_grpc_server::SchedulerGrpcServer;
+use ballista_core::utils::{GrpcServerConfig, create_grpc_server};
+use ballista_executor::ArrowFlightServerProvider;
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
+use ballista_executor::flight_service::BallistaFlightService;
 use ballista_scheduler::cluster::BallistaCluster;
 use ballista_scheduler::config::SchedulerConfig;
-use ballista_scheduler::scheduler_process::start_server;
+use ballista_scheduler::scheduler_process::{create_scheduler, start_server};
+use datafusion_proto::protobuf::{LogicalPlanNode, PhysicalPlanNode};
 
 use crate::codec::{Logical, Physical};
 use crate::failure::Failure;
 use crate::files::NamedFiles;
 use crate::functions;
+use crate::keys::{self, Keys};
 use crate::models::shipped;
 use crate::session;
 use crate::stdout;
 
 /// Seconds between the heartbeats of an executor.
 pub const HEARTBEAT: u64 = 2;
+
+/// The longest message between executors, in bytes: that of the engine's own service.
+const MESSAGE: usize = 16 << 20;
 
 /// The scheduler's arguments.
 #[derive(Clone, Debug)]
@@ -33,6 +43,8 @@ pub struct Scheduler {
     pub patience: u64,
     /// the directories whose files clients may read
     pub files: Vec<PathBuf>,
+    /// the keys of the cluster; without, nothing is encrypted
+    pub keys: Option<Keys>,
 }
 
 /// Runs a scheduler until the process ends.
@@ -42,18 +54,22 @@ pub struct Scheduler {
 /// An address in use; the engine's.
 pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
     let files = Arc::new(NamedFiles::new(&given.files)?);
+    let keys = given.keys.clone();
     let mut config = SchedulerConfig::default()
         .with_hostname(given.host.clone())
         .with_port(given.listen.port())
         .with_scheduler_policy(TaskSchedulingPolicy::PullStaged)
         .with_no_executors_grace_period_seconds(given.patience.max(30))
-        .with_override_config_producer(Arc::new(session::configuration))
+        .with_override_config_producer(Arc::new(move || session::configuration(keys.as_ref())))
         .with_override_session_builder(Arc::new(move |config| session::planner(config, Arc::clone(&files))));
     config.bind_host = given.listen.ip().to_string();
     config.executor_timeout_seconds = given.patience;
     config.expire_dead_executor_interval_seconds = (given.patience / 3).max(1);
     config.override_logical_codec = Some(Arc::new(Logical::default()));
     config.override_physical_codec = Some(Arc::new(Physical::default()));
+    if let Some(keys) = &given.keys {
+        config = config.with_use_tls(true).with_override_create_grpc_client_endpoint(keys.endpoints());
+    }
     let failed =
         |error: String| Failure::Engine(format!("the scheduler at {} stopped: {error}", given.listen));
     // a clear message before that of the engine
@@ -62,7 +78,48 @@ pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
         BallistaCluster::new_from_config(&config).await.map_err(|error| failed(error.to_string()))?;
     // nobody need read it
     let _ = stdout::line(format_args!("scheduler listens at {}", given.listen));
-    start_server(cluster, given.listen, Arc::new(config)).await.map_err(|error| failed(error.to_string()))
+    let config = Arc::new(config);
+    match &given.keys {
+        None => start_server(cluster, given.listen, config).await.map_err(|error| failed(error.to_string())),
+        Some(keys) => {
+            let size = |bytes: u32| usize::try_from(bytes).unwrap_or(usize::MAX);
+            let (decoded, encoded) = (
+                size(config.grpc_server_max_decoding_message_size),
+                size(config.grpc_server_max_encoding_message_size),
+            );
+            let service = create_scheduler::<LogicalPlanNode, PhysicalPlanNode>(cluster, config)
+                .await
+                .map_err(|error| failed(error.to_string()))?;
+            let service = SchedulerGrpcServer::new(service)
+                .max_decoding_message_size(decoded)
+                .max_encoding_message_size(encoded);
+            create_grpc_server(&GrpcServerConfig::default())
+                .tls_config(keys.server())
+                .map_err(|error| failed(error.to_string()))?
+                .add_service(service)
+                .serve(given.listen)
+                .await
+                .map_err(|error| failed(format!("{error:?}")))
+        }
+    }
+}
+
+/// The service from which others fetch an executor's results, by TLS with these keys.
+fn results(keys: Keys, message: usize) -> Arc<ArrowFlightServerProvider> {
+    Arc::new(move |work, listen, mut shutdown, config| {
+        let keys = keys.server();
+        tokio::spawn(async move {
+            let service = FlightServiceServer::new(BallistaFlightService::new(work))
+                .max_decoding_message_size(message)
+                .max_encoding_message_size(message);
+            create_grpc_server(&config)
+                .tls_config(keys)?
+                .add_service(service)
+                .serve_with_shutdown(listen, shutdown.recv())
+                .await
+                .map_err(Into::into)
+        })
+    })
 }
 
 /// An executor's arguments.
@@ -80,6 +137,8 @@ pub struct Executor {
     pub memory: u64,
     /// the directory for results until they are fetched
     pub work: PathBuf,
+    /// the keys of the cluster; without, nothing is encrypted
+    pub keys: Option<Keys>,
 }
 
 /// Runs an executor until it is stopped.
@@ -93,11 +152,12 @@ pub async fn executor(given: &Executor) -> Result<(), Failure> {
     else {
         return Err(Failure::Input(format!("--scheduler {}: expected HOST:PORT", given.scheduler)));
     };
-    session::answers(&given.scheduler).await?;
+    keys::answers(&given.scheduler, given.keys.as_ref()).await?;
     std::fs::create_dir_all(&given.work)
         .map_err(|error| Failure::file(&given.work, "make the directory", error))?;
     let mut registry = BallistaFunctionRegistry::default();
     functions::insert(&mut registry.scalar_functions, &mut registry.aggregate_functions, shipped());
+    let own = given.keys.clone();
     let config = ExecutorProcessConfig {
         bind_host: given.listen.ip().to_string(),
         external_host: Some(given.host.clone()),
@@ -113,7 +173,9 @@ pub async fn executor(given: &Executor) -> Result<(), Failure> {
         job_data_ttl_seconds: 3600,
         job_data_clean_up_interval_seconds: 600,
         override_function_registry: Some(Arc::new(registry)),
-        override_config_producer: Some(Arc::new(session::configuration)),
+        override_config_producer: Some(Arc::new(move || session::configuration(own.as_ref()))),
+        override_create_grpc_client_endpoint: given.keys.as_ref().map(Keys::endpoints),
+        override_arrow_flight_service: given.keys.clone().map(|keys| results(keys, MESSAGE)),
         override_logical_codec: Some(Arc::new(Logical::default())),
         override_physical_codec: Some(Arc::new(Physical::default())),
         ..Default::default()

@@ -2,7 +2,7 @@
 //! of mechanisms as SQL functions.
 //!
 //! `docs/sweeps.md` describes the tool `hodograph-sweep`. The modules of this package, each built on the
-//! previous ones: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`, `files`, `session`, `cluster`,
+//! previous ones: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`, `files`, `keys`, `session`, `cluster`,
 //! `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
 
 pub mod arguments;
@@ -12,6 +12,7 @@ pub mod describe;
 pub mod failure;
 pub mod files;
 pub mod functions;
+pub mod keys;
 pub mod models;
 pub mod output;
 mod parts;

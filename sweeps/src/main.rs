@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use hodograph_sweeps::arguments::{Arguments, Command, cores};
 use hodograph_sweeps::failure::Failure;
+use hodograph_sweeps::keys::{self, Keys};
 use hodograph_sweeps::{cluster, describe, output, run, stdout};
 
 /// Stack size: deep plans are processed recursively.
@@ -36,20 +37,36 @@ fn act(command: Command) -> Result<(), Failure> {
         },
         Command::Functions { model, name } => stdout::line(describe::functions(&model, name.as_deref())?),
         Command::Verify { files } => verify(&files),
-        Command::Scheduler { listen, host, patience, files } => {
+        Command::Keys { directory } => {
+            keys::make(&directory)?;
+            stdout::line(format_args!(
+                "keys in {}: copy the directory to every machine of the cluster, for --tls",
+                directory.display()
+            ))
+        }
+        Command::Scheduler { listen, host, patience, files, tls } => {
+            let keys = tls.as_deref().map(Keys::read).transpose()?;
             let host = host.unwrap_or_else(|| listen.ip().to_string());
-            let given = cluster::Scheduler { listen, host, patience, files };
+            let given = cluster::Scheduler { listen, host, patience, files, keys };
             runtime(cores(None)?)?.block_on(cluster::scheduler(&given))
         }
-        Command::Executor { scheduler, listen, host, cores: given, memory, work } => {
+        Command::Executor { scheduler, listen, host, cores: given, memory, work, tls } => {
+            let keys = tls.as_deref().map(Keys::read).transpose()?;
             let threads = cores(given)?;
             let host = host.unwrap_or_else(|| listen.ip().to_string());
             let own = work.is_none();
             let work = work.unwrap_or_else(|| {
                 std::env::temp_dir().join(format!("hodograph-sweep-{}-{}", listen.port(), std::process::id()))
             });
-            let given =
-                cluster::Executor { scheduler, listen, host, cores: threads, memory: memory as u64, work };
+            let given = cluster::Executor {
+                scheduler,
+                listen,
+                host,
+                cores: threads,
+                memory: memory as u64,
+                work,
+                keys,
+            };
             let done = runtime(threads + 1)?.block_on(cluster::executor(&given));
             if own {
                 // Results that nobody will fetch any more.

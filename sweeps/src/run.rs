@@ -163,7 +163,7 @@ pub async fn run(sweep: &Sweep) -> Result<(), Failure> {
             };
             let before = COUNTED.load(Ordering::Relaxed);
             let progress = Progress::new(total as u64, sweep.quiet);
-            let elsewhere = matches!(sweep.setup.engine, Engine::Cluster(_));
+            let elsewhere = matches!(sweep.setup.engine, Engine::Cluster(..));
             let digest = tokio::select! {
                 digest = open.answer(plan, sweep.out.as_deref(), &mut summary) => digest?,
                 () = progress.clone().wait(), if elsewhere => Digest::default(),
@@ -194,7 +194,7 @@ fn report(sweep: &Sweep, digest: Digest, rows: u64, seconds: f64) -> Result<(), 
     if rows > 0 {
         let rate = rows as f64 / seconds;
         let cores = match sweep.setup.engine {
-            Engine::Cluster(_) => String::new(),
+            Engine::Cluster(..) => String::new(),
             _ => format!(", {:.3e} rows/s and core", rate / sweep.setup.cores as f64),
         };
         stdout::line(format_args!("{:.3e} rows in {seconds:.1} s: {rate:.3e} rows/s{cores}", rows as f64))?;

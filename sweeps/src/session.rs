@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 use ballista::prelude::SessionContextExt;
 use ballista_core::extension::SessionConfigExt;
@@ -16,6 +15,7 @@ use crate::codec::{Logical, Physical};
 use crate::failure::Failure;
 use crate::files::NamedFiles;
 use crate::functions;
+use crate::keys::{self, Keys};
 use crate::models::{Model, shipped};
 use crate::rows::RowsFunction;
 
@@ -26,8 +26,8 @@ pub enum Engine {
     Embedded,
     /// Ballista's scheduler and executor in this process
     InProcess,
-    /// the scheduler at this address
-    Cluster(String),
+    /// the scheduler at this address, reached with these keys
+    Cluster(String, Option<Keys>),
 }
 
 /// The configuration of a session.
@@ -64,11 +64,17 @@ pub fn models(own: &[PathBuf]) -> Result<Vec<Arc<Model>>, Failure> {
     Ok(all)
 }
 
-/// A configuration with the codecs for the tables and models of this package.
-pub fn configuration() -> SessionConfig {
-    SessionConfig::new_with_ballista()
+/// A configuration with the codecs for the tables and models of this package, for connections with these keys.
+pub fn configuration(keys: Option<&Keys>) -> SessionConfig {
+    let config = SessionConfig::new_with_ballista()
         .with_ballista_logical_extension_codec(Arc::new(Logical::default()))
-        .with_ballista_physical_extension_codec(Arc::new(Physical::default()))
+        .with_ballista_physical_extension_codec(Arc::new(Physical::default()));
+    match keys {
+        None => config,
+        Some(keys) => config
+            .with_ballista_use_tls(true)
+            .with_ballista_override_create_grpc_client_endpoint(keys.endpoints()),
+    }
 }
 
 /// A state with all functions, for this configuration.
@@ -116,16 +122,17 @@ impl Setup {
     /// A file is not a model, or the scheduler does not answer.
     pub async fn open(&self) -> Result<(SessionContext, Arc<RowsFunction>), Failure> {
         let models = models(&self.models)?;
-        let config = match self.engine {
+        let config = match &self.engine {
             Engine::Embedded => SessionConfig::new(),
-            _ => configuration().with_ballista_standalone_parallelism(self.cores),
+            Engine::InProcess => configuration(None).with_ballista_standalone_parallelism(self.cores),
+            Engine::Cluster(_, keys) => configuration(keys.as_ref()),
         };
         let state = state(config.with_target_partitions(self.cores), self.memory, &models)?;
         let context = match &self.engine {
             Engine::Embedded => SessionContext::new_with_state(state),
             Engine::InProcess => SessionContext::standalone_with_state(state).await?,
-            Engine::Cluster(address) => {
-                answers(address).await?;
+            Engine::Cluster(address, keys) => {
+                keys::answers(address, keys.as_ref()).await?;
                 SessionContext::remote_with_state(&format!("df://{address}"), state).await?
             }
         };
@@ -141,23 +148,5 @@ impl Setup {
         let rows = Arc::new(RowsFunction::default());
         context.register_udtf("rows", Arc::clone(&rows) as _);
         Ok((context, rows))
-    }
-}
-
-/// Checks that a process listens at an address.
-///
-/// # Errors
-///
-/// No process does.
-pub async fn answers(address: &str) -> Result<(), Failure> {
-    let unreachable = |why: String| {
-        Failure::Engine(format!(
-            "the scheduler at {address} cannot be reached: {why}. Start it with `hodograph-sweep scheduler`, and give --cluster its HOST:PORT"
-        ))
-    };
-    match tokio::time::timeout(Duration::from_secs(10), tokio::net::TcpStream::connect(address)).await {
-        Ok(Ok(_)) => Ok(()),
-        Ok(Err(error)) => Err(unreachable(error.to_string())),
-        Err(_) => Err(unreachable("no answer within 10 s".to_owned())),
     }
 }

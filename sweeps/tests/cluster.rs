@@ -9,6 +9,8 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
+use tonic::transport::{Certificate, ClientTlsConfig, Endpoint, Identity};
+
 use common::{collisions, digest, fails, run, succeeds, tool};
 
 /// A process that ends with the test.
@@ -46,22 +48,31 @@ fn start(home: &Path, arguments: &[&str], ready: &str) -> Process {
 }
 
 fn cluster(home: &Path, files: &[&str]) -> (String, Process, Vec<Process>) {
+    let (scheduler, first, executors, _) = cluster_with(home, files, &[]);
+    (scheduler, first, executors)
+}
+
+/// The address of the scheduler, its process, those of two executors, and the address of one of them; `keys` are
+/// arguments of all three.
+fn cluster_with(home: &Path, files: &[&str], keys: &[&str]) -> (String, Process, Vec<Process>, String) {
     let scheduler = format!("127.0.0.1:{}", free_port());
-    let arguments = [&["scheduler", "--listen", &scheduler, "--patience", "6"], files].concat();
+    let arguments = [&["scheduler", "--listen", &scheduler, "--patience", "6"], files, keys].concat();
     let first = start(home, &arguments, "listens");
     let begun = Instant::now();
     while std::net::TcpStream::connect(&scheduler).is_err() {
         assert!(begun.elapsed() < Duration::from_secs(60), "the scheduler does not listen");
         std::thread::sleep(Duration::from_millis(50));
     }
+    let mut offered = String::new();
     let executors = [0, 1].map(|index| {
         let listen = format!("127.0.0.1:{}", free_port());
         let work = format!("work-{index}");
         let arguments =
             ["executor", "--scheduler", &scheduler, "--listen", &listen, "--cores", "1", "--work", &work];
-        start(home, &arguments, "works for")
+        offered.clone_from(&listen);
+        start(home, &[&arguments[..], keys].concat(), "works for")
     });
-    (scheduler, first, executors.into())
+    (scheduler, first, executors.into(), offered)
 }
 
 #[test]
@@ -146,6 +157,74 @@ fn clients_read_named_files_only() {
     }
     let said = fails(home.path(), &["scheduler", "--files", "nowhere"], 1);
     assert!(said.contains("nowhere"), "{said}");
+}
+
+/// With keys every connection is encrypted, and a cluster serves nobody who has not the same.
+#[test]
+fn a_cluster_with_keys_serves_their_owners_only() {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["mine", "others"] {
+        succeeds(home.path(), &["keys", folder]);
+    }
+    assert!(fails(home.path(), &["keys", "mine"], 2).contains("exists"));
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = std::fs::metadata(home.path().join("mine/key.pem")).unwrap().permissions().mode();
+        assert_eq!(mode & 0o77, 0, "others may read the key");
+    }
+    let sql = collisions(20_000);
+    let embedded = succeeds(home.path(), &["run", "--sql", &sql]);
+    let (scheduler, _first, executors, offered) = cluster_with(home.path(), &[], &["--tls", "mine"]);
+    let ask = ["run", "--cluster", &scheduler, "--sql", &sql];
+    let answer = succeeds(home.path(), &[&ask[..], &["--tls", "mine"]].concat());
+    assert_eq!(digest(&answer), digest(&embedded));
+    // neither queries nor executors without keys, or with others
+    let join = ["executor", "--scheduler", &scheduler, "--listen", "127.0.0.1:1"];
+    for arguments in [&ask[..], &join] {
+        assert!(fails(home.path(), arguments, 1).contains("give --tls"));
+        let others = fails(home.path(), &[arguments, &["--tls", "others"]].concat(), 1);
+        assert!(others.contains("need the same keys"), "{others}");
+    }
+    let missing = fails(home.path(), &[&ask[..], &["--tls", "nowhere"]].concat(), 2);
+    assert!(missing.contains("hodograph-sweep keys nowhere"), "{missing}");
+    std::fs::write(home.path().join("others/key.pem"), "no key").unwrap();
+    let damaged = fails(home.path(), &[&ask[..], &["--tls", "others"]].concat(), 2);
+    assert!(damaged.contains("no usable keys"), "{damaged}");
+    // Who knows the authority alone, without a key of his own, gets nothing from scheduler and executor.
+    let authority = std::fs::read(home.path().join("mine/ca.pem")).unwrap();
+    let refused = |address: &str, identity: bool| {
+        let mut tls = ClientTlsConfig::new()
+            .ca_certificate(Certificate::from_pem(&authority))
+            .domain_name(hodograph_sweeps::keys::NAME);
+        if identity {
+            let read = |name: &str| std::fs::read(home.path().join("mine").join(name)).unwrap();
+            tls = tls.identity(Identity::from_pem(read("certificate.pem"), read("key.pem")));
+        }
+        let endpoint = Endpoint::from_shared(format!("https://{address}")).unwrap().tls_config(tls).unwrap();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async move {
+            let Ok(channel) = endpoint.connect().await else { return true };
+            // A service that is not there answers so; a connection that is refused does not answer.
+            let mut client = tonic::client::Grpc::new(channel);
+            if client.ready().await.is_err() {
+                return true;
+            }
+            let path = http::uri::PathAndQuery::from_static("/nothing/Nothing");
+            let codec = tonic_prost::ProstCodec::<(), ()>::default();
+            let answer = client.unary(tonic::Request::new(()), path, codec).await;
+            answer.err().map(|status| status.code()) != Some(tonic::Code::Unimplemented)
+        })
+    };
+    for address in [&scheduler, &offered] {
+        assert!(!refused(address, true), "{address} does not serve the keys of its cluster");
+        assert!(refused(address, false), "{address} serves without a certificate of the client");
+    }
+    drop(executors);
+    // a scheduler without keys is not taken for one with them
+    let (open, _second, _executors) = cluster(home.path(), &[]);
+    let plain = fails(home.path(), &["run", "--cluster", &open, "--tls", "mine", "--sql", &sql], 1);
+    assert!(plain.contains("does not speak TLS"), "{plain}");
 }
 
 /// An executor whose directory nobody named takes it away when it ends.
