@@ -168,15 +168,20 @@ pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     (found.margin >= -FITS && found.f > 0.0 && held(problem, &modes, &found.acceleration)).then_some(found)
 }
 
+/// A contact without friction begins to slip where its acceleration is above this part of the terms.
+const UNHELD: f64 = 1e-9;
+
 /// A margin is satisfied if it is at least minus this.
 pub(super) const FITS: f64 = 1e-13;
 
-/// Whether the contacts without friction, which nothing prevents from slipping, do not begin to slip.
+/// Whether contacts do not begin to slip: those without friction, which nothing prevents from it, and those whose slip
+/// only forces beyond all bounds could prevent exactly, because they can hardly move relative to each other.
 fn held(problem: &Problem<'_>, modes: &[Mode], acceleration: &DVector<f64>) -> bool {
     let size = acceleration_scale(problem);
     modes.iter().enumerate().all(|(i, mode)| {
         let a = three(acceleration, i);
-        !matches!(mode, Mode::Stick) || hypot(a.y, a.z) <= 1e-9 * size[i] + problem.noise(3 * i + 1)
+        let least = if problem.mu[i] > 0.0 { INCONSISTENT } else { UNHELD };
+        !matches!(mode, Mode::Stick) || hypot(a.y, a.z) <= least * size[i] + problem.noise(3 * i + 1)
     })
 }
 
