@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::{Hold, JAM, margins};
-use crate::motion::{Evaluation, Failure};
+use crate::forces::{Hold, JAM, SLACK, margins};
+use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::smooth_parts::Guard;
 use crate::stepper::Step;
@@ -122,6 +122,9 @@ impl Transition<'_> {
                 noise.push(self.rounding_of_gap(contact));
             }
         }
+        // Forces follow the direction of slip, which slow slip has with a rounding error.
+        let turned = self.rounding_of_directions(closed);
+        let force = self.front.forces.iter().map(Vector3::norm).fold(0.0, f64::max);
         for (place, contact) in closed.iter().enumerate() {
             if self.ends(contact.contact) {
                 watched.push(Watched::End(place));
@@ -130,11 +133,11 @@ impl Transition<'_> {
             // A torque shares the normal force of its contact.
             if self.mechanism.torque(contact.contact).is_none() {
                 watched.push(Watched::Normal(place));
-                noise.push(0.0);
+                noise.push(turned * force);
             }
             if contact.slides.is_none() {
                 watched.push(Watched::Cone(place));
-                noise.push(0.0);
+                noise.push(2.0 * turned * force.powi(2));
             }
             if contact.turning.is_some() {
                 watched.push(Watched::Slip(place));
@@ -143,7 +146,7 @@ impl Transition<'_> {
         }
         if closed.iter().any(|contact| contact.slides.is_some()) {
             watched.push(Watched::Jam);
-            noise.push(0.0);
+            noise.push(turned);
         }
         let (q, u) = (&self.front.y[..n], &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)]);
         for (index, function) in self.options.events.iter().enumerate() {
@@ -227,6 +230,21 @@ impl Transition<'_> {
             let normal = support.normal_size(0, speeds).max(support.velocity[0].abs());
             [all, normal].map(|size| 4.0 * f64::EPSILON * size)
         })
+    }
+
+    /// A bound of the rounding error of the directions of slip, rad; zero where it is less than the slack of the
+    /// conditions of modes.
+    fn rounding_of_directions(&self, closed: &[Closed]) -> f64 {
+        let angle = |closed: &Closed| {
+            let velocity = self.mechanism.contact_velocity(closed.contact, &self.here());
+            let slip = velocity.map_or(0.0, |velocity| velocity.yz().norm());
+            if slip > 0.0 { self.rounding_of_velocity(closed.contact)[0] / slip } else { 0.0 }
+        };
+        let several = closed.len() > 1;
+        let slides = closed.iter().filter(|closed| several && closed.slides.is_some());
+        let greatest = slides.map(angle).fold(0.0, f64::max);
+        // Slower slip has the last direction that it had.
+        if (SLACK..4.0 * f64::EPSILON / DIRECTION).contains(&greatest) { greatest } else { 0.0 }
     }
 
     /// The values of the monitored functions at a time after the front, where the evaluation is known; `at`

@@ -145,7 +145,7 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
 }
 
 /// Relative slack of the conditions that end a mode, so that rounding at the boundary does not end it.
-const SLACK: f64 = 2e-12;
+pub(crate) const SLACK: f64 = 2e-12;
 
 /// An acceleration along a plane without friction below this share of the free ones is a rounding error.
 const UNHELD: f64 = 1e-9;
