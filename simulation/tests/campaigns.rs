@@ -307,8 +307,10 @@ fn hinged_boxes() {
     ];
     let tolerances = &[1e-12, 1e-10, 1e-9];
     // In this one a box begins to tip while the forces at two of its corners fall to some nanonewtons, of which the
-    // Hessian of their barrier did not tell whether they press.
-    campaign(&Family { parameters, tolerances, ..Family::new("elbow", 1.5, [0.6, 0.5], toss) }, 36..37);
+    // Hessian of their barrier did not tell whether they press. In 101 two corners come to rest 30 um apart, where
+    // they can hardly move relative to each other; in 209 a box that slides on six corners begins to tip.
+    let usual = [36, 101, 209];
+    campaign(&Family { parameters, tolerances, ..Family::new("elbow", 1.5, [0.6, 0.5], toss) }, usual);
 }
 
 /// The same with hinges that damp, viscously and by friction.

@@ -28,6 +28,7 @@ mod motion;
 mod natural_map;
 mod near;
 mod prescribed;
+mod pressed;
 mod problem;
 mod solve;
 mod sparse;

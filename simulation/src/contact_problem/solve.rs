@@ -12,6 +12,7 @@ use super::{
     jam::jam,
     motion::centred,
     near::near,
+    pressed::pressed,
 };
 
 /// Forces that obey the laws, with modes and a certificate. If all contacts without slip can stick, they do.
@@ -35,7 +36,7 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
             if let Some(found) = nearest.and_then(|nearest| near(problem, &nearest)) {
                 return Ok(found);
             }
-            if let Some(first) = enumerate(problem).into_iter().next() {
+            if let Some(first) = enumerate(problem).into_iter().next().or_else(|| pressed(problem)) {
                 return Ok(first);
             }
             Err(jam(problem)
