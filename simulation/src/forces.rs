@@ -5,7 +5,7 @@ use nalgebra::{DVector, Vector2, Vector3};
 use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
-use crate::contact_problem::{self, Mode, Wanted};
+use crate::contact_problem::{self, Mode, UNHELD, Wanted};
 
 /// The lists of so many contacts need no memory from the heap.
 const FEW: usize = 4;
@@ -146,9 +146,6 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
 
 /// Relative slack of the conditions that end a mode, so that rounding at the boundary does not end it.
 pub(crate) const SLACK: f64 = 2e-12;
-
-/// An acceleration along a plane without friction below this share of the free ones is a rounding error.
-const UNHELD: f64 = 1e-9;
 
 /// The functions that are positive while the modes last: for each contact lambda_n, and for a sticking one
 /// (mu lambda_n)^2 - lambda_tan^2 (else 1). Without friction there is no force to compare: a contact that

@@ -49,6 +49,6 @@ pub(crate) use self::{
     common_slip::slip_together,
     motion::is_slow,
     near::nearly,
-    prescribed::{Wanted, found},
+    prescribed::{UNHELD, Wanted, found},
     without_jam::solve_without_jam,
 };

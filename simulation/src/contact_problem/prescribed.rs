@@ -168,8 +168,8 @@ pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     (found.margin >= -FITS && found.f > 0.0 && held(problem, &modes, &found.acceleration)).then_some(found)
 }
 
-/// A contact without friction begins to slip where its acceleration is above this part of the terms.
-const UNHELD: f64 = 1e-9;
+/// An acceleration along a plane without friction below this share of the free ones is a rounding error.
+pub(crate) const UNHELD: f64 = 1e-9;
 
 /// A margin is satisfied if it is at least minus this.
 pub(super) const FITS: f64 = 1e-13;
