@@ -90,19 +90,20 @@ impl ClosedContacts {
             return Ok(());
         }
         self.evaluate(mechanism, state, true, Some(&mut *rates), numbers)?;
-        self.weigh(angles, state.speeds, &rates[state.coordinates.len()..]);
+        self.weigh(angles, state.speeds, &rates[state.coordinates.len()..], numbers);
         Ok(())
     }
 
     /// Computes bounds of the rounding errors of the free accelerations. These are sums of the partial
     /// velocities times the accelerations of the speeds, and of velocities times the angular velocities of
-    /// directions.
-    fn weigh(&mut self, angles: &Angles, speeds: &[f64], accelerations: &[f64]) {
+    /// directions. `numbers` is work space.
+    fn weigh(&mut self, angles: &Angles, speeds: &[f64], accelerations: &[f64], numbers: &mut Vec<f64>) {
         let turns = angles.speed(speeds);
         let p = speeds.len().max(1);
+        numbers.clear();
+        numbers.extend(speeds.iter().zip(accelerations).map(|(u, a)| a.abs() + turns * u.abs()));
         for (noise, column) in self.noise.iter_mut().zip(self.partials.as_slice().chunks_exact(p)) {
-            let term = |((v, u), a): ((&f64, &f64), &f64)| v.abs() * (a.abs() + turns * u.abs());
-            *noise = ROUNDING * column.iter().zip(speeds).zip(accelerations).map(term).sum::<f64>();
+            *noise = ROUNDING * column.iter().zip(&*numbers).map(|(v, size)| v.abs() * size).sum::<f64>();
         }
     }
 
@@ -148,6 +149,7 @@ impl ClosedContacts {
         // Torques come last.
         let own = contacts.iter().take_while(|&&contact| mechanism.torque(contact).is_none()).count();
         numbers.resize(3 * p * own, 0.0);
+        let answers = &mut numbers[..];
         let mut known = false;
         if let Some(rates) = rates {
             let (q, u) = rates.split_at_mut(state.coordinates.len());
@@ -156,7 +158,7 @@ impl ClosedContacts {
                 accelerations: &mut u[..p],
                 // V by rows is V^T by columns.
                 partial_velocities: &mut partials.as_mut_slice()[..3 * p * own],
-                responses: &mut *numbers,
+                responses: &mut *answers,
                 velocities: &mut velocity.as_mut_slice()[..3 * own],
                 free_accelerations: &mut beta.as_mut_slice()[..3 * own],
             };
@@ -171,17 +173,16 @@ impl ClosedContacts {
             }
         }
         for (i, &contact) in contacts[..own].iter().enumerate() {
-            let numbers = &mut numbers[3 * p * i..][..3 * p];
+            let answer = &mut answers[3 * p * i..][..3 * p];
             if !known {
                 let partials = &mut partials.as_mut_slice()[3 * p * i..][..3 * p];
                 mechanism.partial_velocities(contact, state, partials)?;
-                mechanism.response(contact, state, numbers)?;
+                mechanism.response(contact, state, answer)?;
             }
-            let columns = &mut response.as_mut_slice()[3 * p * i..][..3 * p];
-            for (speed, row) in numbers.chunks_exact(3).enumerate() {
-                for (axis, number) in row.iter().enumerate() {
-                    columns[p * axis + speed] = *number;
-                }
+            let (n, rest) = response.as_mut_slice()[3 * p * i..][..3 * p].split_at_mut(p);
+            let (t, s) = rest.split_at_mut(p);
+            for (row, ((n, t), s)) in answer.chunks_exact(3).zip(n.iter_mut().zip(t).zip(s)) {
+                (*n, *t, *s) = (row[0], row[1], row[2]);
             }
             if known {
                 continue;
@@ -202,18 +203,17 @@ impl ClosedContacts {
             velocity.rows_mut(3 * i, 3).copy_from(&rows.velocity);
             beta.rows_mut(3 * i, 3).copy_from(&rows.free);
         }
-        let product = |row: usize, column: usize| -> f64 {
-            let (left, right) =
-                (&partials.as_slice()[row * p..][..p], &response.as_slice()[column * p..][..p]);
-            left.iter().zip(right).map(|(left, right)| left * right).sum()
-        };
-        for row in 0..3 * k {
-            coupled[(row, row)] = product(row, row);
-            for column in 0..row {
-                // symmetric up to rounding
-                let both = product(row, column);
-                coupled[(row, column)] = both;
-                coupled[(column, row)] = both;
+        for i in 0..k {
+            let partial = three_columns(partials.as_slice(), p, i);
+            for j in 0..=i {
+                let products = products(partial, three_columns(response.as_slice(), p, j));
+                for (a, row) in products.iter().enumerate() {
+                    // symmetric up to rounding
+                    for (b, both) in row.iter().enumerate().take(if i == j { a + 1 } else { 3 }) {
+                        coupled[(3 * i + a, 3 * j + b)] = *both;
+                        coupled[(3 * j + b, 3 * i + a)] = *both;
+                    }
+                }
             }
         }
         if own < k {
@@ -303,6 +303,27 @@ impl ClosedContacts {
         }
         change
     }
+}
+
+/// The three columns of a contact, each with `p` numbers.
+fn three_columns(columns: &[f64], p: usize, i: usize) -> [&[f64]; 3] {
+    let (n, rest) = columns[3 * p * i..][..3 * p].split_at(p);
+    let (t, s) = rest.split_at(p);
+    [n, t, s]
+}
+
+/// The nine products of these columns with those.
+fn products(left: [&[f64]; 3], right: [&[f64]; 3]) -> [[f64; 3]; 3] {
+    let p = left[0].len();
+    let ([l0, l1, l2], [r0, r1, r2]) = (left.map(|column| &column[..p]), right.map(|column| &column[..p]));
+    let mut sums = [[0.0; 3]; 3];
+    for i in 0..p {
+        let (l, r) = ([l0[i], l1[i], l2[i]], [r0[i], r1[i], r2[i]]);
+        for (row, l) in sums.iter_mut().zip(l) {
+            row.iter_mut().zip(r).for_each(|(sum, r)| *sum += l * r);
+        }
+    }
+    sums
 }
 
 /// beta of a contact. If the mechanism does not provide it, it is the derivative of the contact velocity

@@ -126,6 +126,21 @@ names! {
 }
 
 impl EventKind {
+    /// Says whether other modes were possible, of events that select modes.
+    pub(crate) fn select(&mut self, found: Selection) {
+        match self {
+            Self::Contact { selection, .. }
+            | Self::LiftOff { selection }
+            | Self::Slip { selection, .. }
+            | Self::Stick { selection }
+            | Self::Roll { selection, .. }
+            | Self::RollEnds { selection }
+            | Self::Spin { selection, .. }
+            | Self::SpinEnds { selection } => *selection = found,
+            _ => {}
+        }
+    }
+
     /// Whether other modes were possible, for events that select modes.
     pub fn selection(&self) -> Option<Selection> {
         match self {

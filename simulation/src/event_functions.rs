@@ -10,7 +10,7 @@ use crate::forces::{Hold, JAM, SLACK, margins};
 use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::smooth_parts::Guard;
-use crate::stepper::Step;
+use crate::stepper::{Step, Within};
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
@@ -255,7 +255,7 @@ impl Transition<'_> {
         watched: &[Watched],
         after: f64,
         here: Option<&Evaluation>,
-        at: &mut dyn FnMut(f64) -> Vec<f64>,
+        at: &mut dyn FnMut(f64) -> Within,
     ) -> Result<Vec<f64>, Failure> {
         let y = at(after);
         let motion = self.motion(closed);
@@ -280,39 +280,41 @@ impl Transition<'_> {
                 slips = slips_left(closed, evaluation);
             }
         }
-        watched
-            .iter()
-            .map(|what| match *what {
-                Watched::Gap(contact) => {
-                    match self.front.phases[contact] {
-                        Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
-                        // The gap by integration of its rate, from the time when it was zero at the front;
-                        // minus the rounding error of its acceleration.
-                        Phase::Open(Leaving::Lifted { risen, rounding }) => {
-                            let mean = self.mean_rate(contact, after, at)? + 0.5 * rounding * after;
-                            Ok(if risen > 0.0 { risen + after * mean } else { mean })
-                        }
-                        _ => {
-                            let gap = distances[contact].gap.unwrap_or(1.0);
-                            Ok(gap - self.watched_from(contact))
-                        }
+        let mut value = |what: &Watched| match *what {
+            Watched::Gap(contact) => {
+                match self.front.phases[contact] {
+                    Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
+                    // The gap by integration of its rate, from the time when it was zero at the front;
+                    // minus the rounding error of its acceleration.
+                    Phase::Open(Leaving::Lifted { risen, rounding }) => {
+                        let mean = self.mean_rate(contact, after, at)? + 0.5 * rounding * after;
+                        Ok(if risen > 0.0 { risen + after * mean } else { mean })
+                    }
+                    _ => {
+                        let gap = distances[contact].gap.unwrap_or(1.0);
+                        Ok(gap - self.watched_from(contact))
                     }
                 }
-                Watched::Entry(contact) => Ok(self.low() - self.validity_in(contact, &distances)),
-                Watched::End(place) => Ok(self.validity_in(closed[place].contact, &distances)),
-                Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
-                Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
-                Watched::Slip(place) => Ok(slips.get(place).copied().unwrap_or(1.0)),
-                Watched::Jam => Ok(f - JAM),
-                Watched::User(index, sign) => match (self.options.events[index])(t, q, u) {
-                    // One that is not comes to no zero, and steps would be shortened for ever.
-                    value if !value.is_finite() => Err(Failure::Input(format!(
-                        "the event function {index} is {value} at t = {t} s: it must be finite"
-                    ))),
-                    value => Ok(sign * value),
-                },
-            })
-            .collect()
+            }
+            Watched::Entry(contact) => Ok(self.low() - self.validity_in(contact, &distances)),
+            Watched::End(place) => Ok(self.validity_in(closed[place].contact, &distances)),
+            Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
+            Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
+            Watched::Slip(place) => Ok(slips.get(place).copied().unwrap_or(1.0)),
+            Watched::Jam => Ok(f - JAM),
+            Watched::User(index, sign) => match (self.options.events[index])(t, q, u) {
+                // One that is not comes to no zero, and steps would be shortened for ever.
+                value if !value.is_finite() => Err(Failure::Input(format!(
+                    "the event function {index} is {value} at t = {t} s: it must be finite"
+                ))),
+                value => Ok(sign * value),
+            },
+        };
+        let mut values = Vec::with_capacity(watched.len());
+        for what in watched {
+            values.push(value(what)?);
+        }
+        Ok(values)
     }
 
     /// The rates of the monitored functions at a time after the front, where they are known: those of gaps
@@ -413,7 +415,7 @@ impl Transition<'_> {
         &self,
         contact: usize,
         after: f64,
-        at: &mut dyn FnMut(f64) -> Vec<f64>,
+        at: &mut dyn FnMut(f64) -> Within,
     ) -> Result<f64, Failure> {
         self.mean_rate_from(self.front.t, contact, after, at)
     }
@@ -423,7 +425,7 @@ impl Transition<'_> {
         start: f64,
         contact: usize,
         after: f64,
-        at: &mut dyn FnMut(f64) -> Vec<f64>,
+        at: &mut dyn FnMut(f64) -> Within,
     ) -> Result<f64, Failure> {
         let motion = self.motion(&[]);
         let mut mean = 0.0;
@@ -527,7 +529,7 @@ impl Transition<'_> {
     /// The state of a contact that lifts off, after a step.
     fn risen(&self, contact: usize, before: f64, step: &Step) -> Result<Leaving, SimulationError> {
         let (step_start, h) = (step.t, step.h);
-        let mut at = |after: f64| if h > 0.0 { step.at(after / h) } else { step.end.clone() };
+        let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
         let mean = self.mean_rate_from(step_start, contact, h, &mut at);
         let risen = before + h * mean.map_err(|failure| self.failure(failure))?;
         Ok(Leaving::Lifted { risen: risen.max(0.0), rounding: 0.0 })

@@ -6,7 +6,7 @@
 //! v+_n >= -e v-_n and p_n >= 0, one of them with equality, and friction abs(p_tan) <= mu p_n, which opposes
 //! the remaining slip (docs/theory.md, section 17.13).
 
-use hodograph::{Law, Selection, State};
+use hodograph::{Law, State};
 use nalgebra::{DVector, Vector2};
 
 use crate::closed_contacts::ClosedContacts;
@@ -109,11 +109,9 @@ impl Transition<'_> {
             Mode::Stick => Decision::Stick,
             Mode::Slide(direction) => Decision::Slide(*direction, self.front.phases[contact] == Phase::Stick),
         };
-        Choice {
-            decisions: contacts.iter().zip(&solution.modes).map(decision).collect(),
-            forces: (0..contacts.len()).map(|i| ClosedContacts::three(&solution.force, i) / h).collect(),
-            selection: vec![Selection::Unknown; contacts.len()],
-        }
+        let decisions = contacts.iter().zip(&solution.modes).map(decision).collect();
+        let forces = (0..contacts.len()).map(|i| ClosedContacts::three(&solution.force, i) / h).collect();
+        Choice::among_unknown(decisions, forces)
     }
 
     /// The impact of these contacts at once; `faded` ones have no restitution.

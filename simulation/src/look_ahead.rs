@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, margins};
-use crate::mode_selection::{Choice, Decision, choose};
+use crate::mode_selection::{Choice, Decision, Question};
 use crate::motion::{Evaluation, Failure, NO_SLIP};
 use crate::phase::{Closed, Phase, mus};
 use crate::stepper::Step;
@@ -37,7 +37,7 @@ enum Ahead {
     /// The modes continue.
     Fit,
     /// The modes end here; the following ones.
-    End(Choice),
+    End(Box<(Question, Choice)>),
 }
 
 impl Transition<'_> {
@@ -58,11 +58,10 @@ impl Transition<'_> {
             }
             return match self.chosen_at(contacts, &was, &step)? {
                 // Nothing changes: the conditions are violated by no more than the errors of the state.
-                Ok(choice) if self.go_on(contacts, &choice) => break,
-                Ok(choice) => {
+                Ok((_, choice)) if self.go_on(contacts, &choice) => break,
+                Ok((question, choice)) => {
                     self.begin_from_rest(contacts, &choice)?;
-                    self.apply(contacts, &was, &choice);
-                    self.confirm(contacts, &was)
+                    self.apply_and_confirm(contacts, &was, (question, choice))
                 }
                 Err(lacking) => self.without_forces(contacts, lacking),
             };
@@ -74,22 +73,31 @@ impl Transition<'_> {
         }
     }
 
-    /// Confirms modes that were just decided where events are frequent: they must hold a little later, too.
-    pub(crate) fn confirm(&mut self, contacts: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
-        if contacts.len() < 2 || self.front.crowd < DOUBT {
-            return Ok(());
-        }
-        for round in 0..ROUNDS {
+    /// Applies modes that were just decided, and confirms them where events are frequent: they must hold a little later,
+    /// too.
+    pub(crate) fn apply_and_confirm(
+        &mut self,
+        contacts: &[usize],
+        was: &[Phase],
+        (mut question, mut choice): (Question, Choice),
+    ) -> Result<(), SimulationError> {
+        let mut since = self.events.len();
+        self.apply(contacts, was, &choice);
+        let rounds = if contacts.len() < 2 || self.front.crowd < DOUBT { 0 } else { ROUNDS };
+        for round in 0..rounds {
             match self.modes_ahead(contacts, was, round)? {
-                Ahead::Fit => return Ok(()),
-                Ahead::End(choice) => {
+                Ahead::Fit => break,
+                Ahead::End(next) => {
+                    (question, choice) = *next;
                     self.forget_mode_events(contacts);
                     self.front.phases.clone_from_slice(was);
                     self.begin_from_rest(contacts, &choice)?;
+                    since = self.events.len();
                     self.apply(contacts, was, &choice);
                 }
             }
         }
+        self.tell_selection(since, &question, &choice);
         Ok(())
     }
 
@@ -101,7 +109,8 @@ impl Transition<'_> {
         if fits && self.opened(contacts, &step)? {
             return Ok(Ahead::Fit);
         }
-        Ok(self.chosen_at(contacts, was, &step)?.map_or(Ahead::Fit, Ahead::End))
+        let chosen = self.chosen_at(contacts, was, &step)?;
+        Ok(chosen.map_or(Ahead::Fit, |chosen| Ahead::End(Box::new(chosen))))
     }
 
     /// New slip begins from zero, since a rounding error of the previous slip would have a direction.
@@ -157,7 +166,7 @@ impl Transition<'_> {
         contacts: &[usize],
         was: &[Phase],
         step: &Step,
-    ) -> Result<Result<Choice, Lacking>, SimulationError> {
+    ) -> Result<Result<(Question, Choice), Lacking>, SimulationError> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&step.end);
         let time = step.t + step.h;
@@ -187,7 +196,9 @@ impl Transition<'_> {
             })
             .collect();
         let friction = self.frictions(contacts, &slips, &support)?;
-        Ok(choose(&support, &slips, &friction, &self.forces_before(contacts)))
+        let question = Question { support, slips, friction };
+        let choice = question.choose(&self.forces_before(contacts));
+        Ok(choice.map(|choice| (question, choice)))
     }
 
     /// Whether these decisions are the present modes.

@@ -5,7 +5,7 @@ use nalgebra::{DVector, Vector2, Vector3};
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, hold_good};
-use crate::mode_selection::{Choice, Decision, choose};
+use crate::mode_selection::{Choice, Decision, Question};
 use crate::motion::{Failure, NO_SLIP};
 use crate::pair::Friction;
 use crate::phase::{Leaving, Phase, mus};
@@ -184,11 +184,9 @@ impl Transition<'_> {
             friction.iter_mut().for_each(|friction| friction.sticks = friction.slips);
         }
         let before = self.forces_before(candidates);
-        match choose(&support, &slips, &friction, &before) {
-            Ok(choice) => {
-                self.apply(candidates, was, &choice);
-                self.confirm(candidates, was)
-            }
+        let question = Question { support, slips, friction };
+        match question.choose(&before) {
+            Ok(choice) => self.apply_and_confirm(candidates, was, (question, choice)),
             Err(lacking) => self.without_forces(candidates, lacking),
         }
     }
@@ -260,10 +258,11 @@ impl Transition<'_> {
             .collect())
     }
 
-    /// Applies the chosen modes, and records the changes as events.
+    /// Applies the chosen modes, and records the changes as events; whether others were possible is told later, if it is
+    /// not known ([`Self::tell_selection`]).
     pub(crate) fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
         for (place, &contact) in candidates.iter().enumerate() {
-            let selection = choice.selection[place];
+            let selection = choice.selection.unwrap_or(Selection::Unknown);
             self.front.forces[contact] = choice.forces[place];
             if let Some(torque) = self.mechanism.torque(contact) {
                 self.apply_to_torque(contact, torque, was[contact], choice.decisions[place], selection);
@@ -300,6 +299,18 @@ impl Transition<'_> {
                 }
             }
         }
+    }
+
+    /// Tells the events since this number whether other modes were possible.
+    pub(crate) fn tell_selection(&mut self, since: usize, question: &Question, choice: &Choice) {
+        let since = since.min(self.events.len());
+        if choice.selection.is_some()
+            || self.events[since..].iter().all(|event| event.kind.selection().is_none())
+        {
+            return;
+        }
+        let selection = question.selection(choice);
+        self.events[since..].iter_mut().for_each(|event| event.kind.select(selection));
     }
 
     fn slips(&mut self, contact: usize, selection: Selection) {

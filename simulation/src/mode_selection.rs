@@ -24,12 +24,60 @@ pub(crate) enum Decision {
     Slide(Vector2<f64>, bool),
 }
 
-/// Decisions for all closed contacts, and whether others were possible.
+/// Decisions for all closed contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice {
     pub decisions: Vec<Decision>,
     pub forces: Vec<Vector3<f64>>,
-    pub selection: Vec<Selection>,
+    /// Whether others were possible, where that is known without looking for them.
+    pub selection: Option<Selection>,
+    /// The contacts that static friction holds, or would.
+    held: Vec<bool>,
+}
+
+impl Choice {
+    /// Decisions of which nobody knows whether others were possible.
+    pub fn among_unknown(decisions: Vec<Decision>, forces: Vec<Vector3<f64>>) -> Self {
+        Self { decisions, forces, selection: Some(Selection::Unknown), held: Vec::new() }
+    }
+}
+
+/// Contacts whose modes are asked for: their state, the direction of slip of each (`None` without slip), and their
+/// friction.
+#[derive(Clone, Debug)]
+pub(crate) struct Question {
+    pub support: ClosedContacts,
+    pub slips: Vec<Option<Vector2<f64>>>,
+    pub friction: Vec<Friction>,
+}
+
+impl Question {
+    /// Chooses the modes; see [`choose`].
+    pub fn choose(&self, before: &DVector<f64>) -> Result<Choice, Lacking> {
+        choose(&self.support, &self.slips, &self.friction, before)
+    }
+
+    /// Whether other modes than the chosen ones were possible. They are looked for, which may cost more than the choice.
+    pub fn selection(&self, choice: &Choice) -> Selection {
+        if let Some(known) = choice.selection {
+            return known;
+        }
+        let mu = coefficients(&self.friction, &choice.held);
+        let mode = |decision: &Decision| match decision {
+            Decision::Separate => Mode::Separate,
+            Decision::Stick => Mode::Stick,
+            Decision::Slide(direction, _) => Mode::Slide(*direction),
+        };
+        let modes: Vec<Mode> = choice.decisions.iter().map(mode).collect();
+        let numbers = choice.forces.iter().flat_map(|force| force.iter().copied());
+        let force = DVector::from_iterator(3 * choice.forces.len(), numbers);
+        match selection(&self.support.problem(&mu, &self.slips), &modes, &force) {
+            Selection::Unique if others_fit(&self.support, &self.slips, &self.friction, choice) => {
+                Selection::SeveralModes
+            }
+            found => found,
+        }
+    }
 }
 
 /// Chooses the modes of closed contacts. `slips` is the direction of slip of each, `None` without slip;
@@ -47,7 +95,8 @@ pub(crate) fn choose(
         return Ok(Choice {
             decisions: slips.iter().map(decision).collect(),
             forces: vec![Vector3::zeros(); slips.len()],
-            selection: vec![Selection::Unknown; slips.len()],
+            selection: Some(Selection::Unknown),
+            held: Vec::new(),
         });
     }
     if support.len() == 1 {
@@ -63,10 +112,7 @@ pub(crate) fn choose(
         let leave: Vec<usize> =
             (0..held.len()).filter(|&i| begins(i) && friction[i].sticks > friction[i].slips).collect();
         if leave.is_empty() {
-            if choice.selection.contains(&Selection::Unique) && others_fit(support, slips, friction, &choice)
-            {
-                choice.selection.fill(Selection::SeveralModes);
-            }
+            choice.held = held;
             return Ok(choice);
         }
         for i in leave {
@@ -127,13 +173,13 @@ fn choose_with(
     let slips = problem.slip;
     if let Some(rest) = contact_problem::rest(problem) {
         let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
-        return Ok(chosen(problem, &modes, &rest.force));
+        return Ok(chosen(problem, &modes, &rest.force, None));
     }
     let found = contact_problem::solve_without_jam(problem, Some(before));
     if let Err(Unsolved::NotFound { .. }) = found
         && let Some((modes, nearly)) = contact_problem::nearly(problem, Some(before))
     {
-        return Ok(chosen_as(problem, &modes, &nearly.force, Selection::Unknown));
+        return Ok(chosen(problem, &modes, &nearly.force, Some(Selection::Unknown)));
     }
     let (solution, middle) = found.map_err(|unsolved| match unsolved {
         Unsolved::Jam { contact, .. } => {
@@ -144,16 +190,17 @@ fn choose_with(
     })?;
     // Among many forces for this motion the analytic centre.
     match middle {
-        Some(middle) if middle.margin >= 0.0 => Ok(chosen(problem, &solution.modes, &middle.force)),
-        _ => Ok(chosen(problem, &solution.modes, &solution.force)),
+        Some(middle) if middle.margin >= 0.0 => Ok(chosen(problem, &solution.modes, &middle.force, None)),
+        _ => Ok(chosen(problem, &solution.modes, &solution.force, None)),
     }
 }
 
-fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Choice {
-    chosen_as(problem, modes, force, selection(problem, modes, force))
-}
-
-fn chosen_as(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>, selection: Selection) -> Choice {
+fn chosen(
+    problem: &Problem<'_>,
+    modes: &[Mode],
+    force: &DVector<f64>,
+    selection: Option<Selection>,
+) -> Choice {
     let decision = |(mode, slip): (&Mode, &Option<Vector2<f64>>)| match mode {
         Mode::Separate => Decision::Separate,
         Mode::Stick => Decision::Stick,
@@ -162,7 +209,8 @@ fn chosen_as(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>, select
     Choice {
         decisions: modes.iter().zip(problem.slip).map(decision).collect(),
         forces: (0..modes.len()).map(|i| ClosedContacts::three(force, i)).collect(),
-        selection: vec![selection; modes.len()],
+        selection,
+        held: Vec::new(),
     }
 }
 
@@ -223,7 +271,8 @@ fn one(
     Ok(Choice {
         decisions: vec![decision(answer.mode, answer.direction)],
         forces: vec![answer.force],
-        selection: vec![answer.selection],
+        selection: Some(answer.selection),
+        held: Vec::new(),
     })
 }
 
@@ -384,7 +433,10 @@ mod tests {
                 })
                 .collect();
             let slips = vec![None; k];
-            let choice = choose(&support, &slips, &friction, &DVector::zeros(3 * k)).unwrap();
+            let question = Question { support, slips, friction };
+            let choice = question.choose(&DVector::zeros(3 * k)).unwrap();
+            let selection = question.selection(&choice);
+            let Question { support, slips, friction } = question;
             let mut all = DVector::zeros(3 * k);
             for (i, force) in choice.forces.iter().enumerate() {
                 all.rows_mut(3 * i, 3).copy_from(force);
@@ -422,7 +474,7 @@ mod tests {
             let mu: Vec<f64> = friction.iter().map(|friction| friction.slips).collect();
             if rests && contact_problem::rest(&support.problem(&mu, &slips)).is_none() {
                 seen[3] += 1;
-                assert_eq!(choice.selection[0], Selection::SeveralModes, "{seed}");
+                assert_eq!(selection, Selection::SeveralModes, "{seed}");
             }
         }
         assert!(seen.iter().all(|&seen| seen > 10), "{seen:?}");

@@ -1,5 +1,6 @@
 //! The right-hand side of the integration: the rates of the state for constant modes of all contacts.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 
 use hodograph::{ComponentKind, ContactError, State, StateError};
@@ -88,10 +89,18 @@ fn direction(
     if speed > DIRECTION * now() && (forward || speed > NO_SLIP * ever()) { slip / speed } else { began }
 }
 
+/// Keeps these forces for the next state.
+fn keep(last: &mut Option<DVector<f64>>, forces: &DVector<f64>) {
+    match last {
+        Some(last) if last.len() == forces.len() => last.copy_from(forces),
+        none => *none = Some(forces.clone()),
+    }
+}
+
 /// Number of components of the state beyond coordinates and speeds: work of friction and of inputs.
 pub(crate) const WORKS: usize = 2;
 
-impl Motion<'_> {
+impl<'a> Motion<'a> {
     /// Coordinates and speeds.
     pub fn split<'y>(&self, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
         let (n, p) =
@@ -100,9 +109,11 @@ impl Motion<'_> {
     }
 
     /// The inputs in a state.
-    pub fn inputs(&self, t: f64, y: &[f64]) -> Result<Vec<f64>, Failure> {
-        let mut inputs = self.held.to_vec();
-        self.drive_inputs(t, y, &mut inputs)?;
+    pub fn inputs(&self, t: f64, y: &[f64]) -> Result<Cow<'a, [f64]>, Failure> {
+        let mut inputs = Cow::Borrowed(self.held);
+        if let Drive::Continuous(_) = self.drive {
+            self.drive_inputs(t, y, inputs.to_mut())?;
+        }
         Ok(inputs)
     }
 
@@ -246,14 +257,17 @@ impl Motion<'_> {
             let solve = |holds: &[Hold]| {
                 let found = forces(support, holds, mu, near.borrow().as_ref(), Wanted::Motion)?;
                 if several {
-                    near.replace(Some(found.lambda.clone()));
+                    keep(&mut near.borrow_mut(), &found.lambda);
                 }
                 Ok(found)
             };
             settle_directions(support, self.closed, holds, &solve);
             settled_direction::settle(support, self.closed, t, holds, &solve).ok_or(Failure::NoForces)?;
             let answer = forces(support, holds, mu, near.borrow().as_ref(), wanted).map_err(lacking)?;
-            *last = several.then(|| answer.lambda.clone());
+            *last = near.into_inner().filter(|_| several);
+            if several {
+                keep(last, &answer.lambda);
+            }
             let greatest = answer.lambda.amax();
             let accelerations = &mut rates[n..n + p];
             // The sums of the magnitudes of the terms.

@@ -2,7 +2,8 @@
 //!
 //! Theory: docs/theory.md, section 17.5.
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::{DMatrix, Vector2};
+use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking};
@@ -21,6 +22,11 @@ const NEXT: f64 = 1e-13;
 const ROUNDING: f64 = 1e-14;
 const COARSE: f64 = 1e-11;
 
+/// Lists of so many contacts need no memory from the heap.
+const FEW: usize = 4;
+/// A number for each contact that turns.
+pub(crate) type Angles = SmallVec<[f64; FEW]>;
+
 /// A function that returns the forces for modes.
 pub(crate) type Solve<'a> = dyn Fn(&[Hold]) -> Result<Forces, Lacking> + 'a;
 
@@ -33,7 +39,7 @@ pub(crate) fn settle(
     solve: &Solve<'_>,
 ) -> Option<()> {
     let turning = |place: &usize| closed[*place].turning.as_ref();
-    let places: Vec<usize> = (0..closed.len()).filter(|place| turning(place).is_some()).collect();
+    let places: SmallVec<[usize; FEW]> = (0..closed.len()).filter(|place| turning(place).is_some()).collect();
     let Some(first) = places.first().and_then(turning) else { return Some(()) };
     let mut inverse = (*first.inverse).clone();
     for place in &places {
@@ -55,14 +61,13 @@ fn turned(d: Vector2<f64>, angle: f64) -> Vector2<f64> {
 }
 
 /// The accelerations of contacts perpendicular to their directions of slip.
-pub(crate) fn across(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<DVector<f64>> {
+pub(crate) fn across(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<Angles> {
     let found = solve(holds).ok()?.acceleration;
-    let mut across = DVector::zeros(places.len());
-    for (across, &place) in across.iter_mut().zip(places) {
+    let component = |&place: &usize| {
         let d = holds[place].direction()?;
-        *across = d.x * found[3 * place + 2] - d.y * found[3 * place + 1];
-    }
-    Some(across)
+        Some(d.x * found[3 * place + 2] - d.y * found[3 * place + 1])
+    };
+    places.iter().map(component).collect()
 }
 
 /// The derivatives of the accelerations perpendicular to the directions of `places` with respect to their
@@ -70,12 +75,14 @@ pub(crate) fn across(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Opt
 pub(crate) fn slopes(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<DMatrix<f64>> {
     let mut slopes = DMatrix::zeros(places.len(), places.len());
     for (column, &place) in places.iter().enumerate() {
-        let at = |angle: f64| -> Option<DVector<f64>> {
-            let mut there = holds.to_vec();
+        let at = |angle: f64| -> Option<Angles> {
+            let mut there: SmallVec<[Hold; FEW]> = holds.into();
             there[place] = Hold::Slide(turned(holds[place].direction()?, angle));
             across(&there, places, solve)
         };
-        slopes.set_column(column, &((at(TURN)? - at(-TURN)?) / (2.0 * TURN)));
+        for (row, (above, below)) in at(TURN)?.iter().zip(&at(-TURN)?).enumerate() {
+            slopes[(row, column)] = (above - below) / (2.0 * TURN);
+        }
     }
     Some(slopes)
 }
@@ -90,18 +97,24 @@ pub(crate) fn turn_until(
     wanted: &dyn Fn(usize, &Vector2<f64>) -> f64,
     solve: &Solve<'_>,
 ) -> Option<()> {
-    let residual = |holds: &[Hold]| -> Option<DVector<f64>> {
+    let residual = |holds: &[Hold]| -> Option<Angles> {
         let mut left = across(holds, places, solve)?;
         for (left, &place) in left.iter_mut().zip(places) {
             *left -= wanted(place, &holds[place].direction()?);
         }
         Some(left)
     };
+    let times = |inverse: &DMatrix<f64>, of: &dyn Fn(usize) -> f64| -> Angles {
+        let row = |i: usize| (0..places.len()).map(|j| inverse[(i, j)] * of(j)).sum();
+        (0..places.len()).map(row).collect()
+    };
     let mut left = residual(holds)?;
     let mut last: Option<f64> = None;
     for _ in 0..STEPS {
-        let step = -(&*inverse * &left);
-        let size = step.amax();
+        let step = times(inverse, &|j| -left[j]);
+        let size = step
+            .iter()
+            .fold(0.0_f64, |size, part| if part.is_nan() { f64::NAN } else { size.max(part.abs()) });
         // steps that grow lead to other directions with the same accelerations, not to the settled ones
         let grows = last.is_some_and(|last| size > last && size > COARSE);
         if size.is_nan() || size >= 1.0 || grows {
@@ -119,11 +132,17 @@ pub(crate) fn turn_until(
         }
         last = Some(size);
         let after = residual(holds)?;
-        let change = &*inverse * (&after - &left);
-        let along = step.dot(&change);
+        let change = times(inverse, &|j| after[j] - left[j]);
+        let along: f64 = step.iter().zip(&change).map(|(step, change)| step * change).sum();
         if along != 0.0 {
-            let row = inverse.tr_mul(&step).transpose() / along;
-            *inverse += (step - change) * row;
+            let row: Angles = (0..places.len())
+                .map(|j| (0..places.len()).map(|i| inverse[(i, j)] * step[i]).sum::<f64>() / along)
+                .collect();
+            for (j, row) in row.iter().enumerate() {
+                for (i, (step, change)) in step.iter().zip(&change).enumerate() {
+                    inverse[(i, j)] += (step - change) * row;
+                }
+            }
         }
         left = after;
     }
@@ -181,7 +200,8 @@ mod tests {
                     continue;
                 }
                 found.unwrap();
-                assert!((across(&holds, &places, &solve).unwrap() - &known).amax() < 1e-12);
+                let there = across(&holds, &places, &solve).unwrap();
+                assert!(there.iter().zip(&known).all(|(there, known)| (there - known).abs() < 1e-12));
                 for &place in &places {
                     let d = holds[place].direction().unwrap();
                     assert!((d - directions[place]).norm() < 1e-13 && (d.norm() - 1.0).abs() < 1e-15, "{d}");

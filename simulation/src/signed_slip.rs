@@ -138,7 +138,8 @@ fn together(
             for &place in places {
                 there[place] = holds[place];
             }
-            across(&there, places, &|holds| solved(motion, &support, holds))
+            let across = across(&there, places, &|holds| solved(motion, &support, holds))?;
+            Some(DVector::from_column_slice(&across))
         };
         Some((at(ahead_by)? - at(-ahead_by)?) / (2.0 * ahead_by))
     };

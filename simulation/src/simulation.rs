@@ -279,7 +279,9 @@ impl<'m> Simulation<'m> {
             None => None,
             Some((step, modes)) => {
                 let transition = self.transition();
-                transition.within_step(step, modes, time).or_else(|| Some(step.at((time - step.t) / step.h)))
+                transition
+                    .within_step(step, modes, time)
+                    .or_else(|| Some(step.at((time - step.t) / step.h).to_vec()))
             }
         };
         if let Some(state) = state {

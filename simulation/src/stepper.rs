@@ -8,6 +8,7 @@
 use std::sync::LazyLock;
 
 use differential_equations::tableau::ButcherTableau;
+use smallvec::SmallVec;
 
 /// Numbers of stages of the method and of its dense output including the rates at the end, and its order.
 const STAGES: usize = 12;
@@ -44,6 +45,9 @@ pub struct Step {
     dense: Vec<f64>,
 }
 
+/// A state within a step; one of so many numbers needs no memory from the heap.
+pub(crate) type Within = SmallVec<[f64; 32]>;
+
 impl Step {
     /// A step at rest over this time.
     pub fn still(t: f64, h: f64, state: &[f64]) -> Self {
@@ -62,16 +66,16 @@ impl Step {
     }
 
     /// The state at a fraction of the step.
-    pub fn at(&self, fraction: f64) -> Vec<f64> {
+    pub fn at(&self, fraction: f64) -> Within {
         let n = self.start.len();
         if fraction >= 1.0 || self.dense.is_empty() {
-            return self.end.clone();
+            return Within::from_slice(&self.end);
         }
         if fraction <= 0.0 {
-            return self.start.clone();
+            return Within::from_slice(&self.start);
         }
         // c0 + s (c1 + (1 - s) (c2 + s (c3 + (1 - s) (..)))).
-        let mut state = self.dense[(ORDER - 1) * n..].to_vec();
+        let mut state = Within::from_slice(&self.dense[(ORDER - 1) * n..]);
         for (place, coefficients) in self.dense.chunks_exact(n).enumerate().rev().skip(1) {
             let factor = if place % 2 == 0 { fraction } else { 1.0 - fraction };
             for (state, coefficient) in state.iter_mut().zip(coefficients) {

@@ -7,10 +7,10 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
-use hodograph::generated::hypot;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
+    barrier::Barrier,
     cone::{Cone, least_reserve},
     linear::Vector,
     squares::Squares,
@@ -73,98 +73,71 @@ const NEAR: f64 = 1e-6;
 /// half of their digits.
 const THIN: f64 = 1e-4;
 
-/// Gradient and Hessian of the barrier with respect to y and to the reserve s of all cones, and of the
-/// square.
-struct Barrier {
-    gradient: DVector<f64>,
-    hessian: DMatrix<f64>,
+/// Newton's steps on the barrier.
+struct Steps<'c> {
+    cones: &'c [Cone],
+    basis: &'c DMatrix<f64>,
+    load: f64,
+    /// without it steps are computed from squares
+    barrier: Option<Barrier<'c>>,
 }
 
-/// The barrier of the cones reduced by `s`; the last variable is s. Of the Hessian the lower triangle is
-/// computed, which is what its factorisation reads. `rows` is the transposed basis.
-fn barrier(cones: &[Cone], rows: &DMatrix<f64>, load: f64, x: &DVector<f64>, s: f64) -> Barrier {
-    let p = rows.nrows();
-    let mut by_x = DVector::zeros(x.len());
-    // Rows of the Hessian with respect to x, times the basis; added contact by contact.
-    let mut gradient = DVector::zeros(p + 1);
-    let mut hessian = DMatrix::zeros(p + 1, p + 1);
-    let mut row = Vector::zeros(p + 1);
-    let mut add_square = |factor: f64, parts: &[(usize, f64)], by_s: f64| {
-        fill_row(&mut row, rows, parts, by_s);
-        for (j, column) in hessian.as_mut_slice().chunks_exact_mut(p + 1).enumerate() {
-            let scaled = factor * row[j];
-            column[j..].iter_mut().zip(&row[j..]).for_each(|(entry, own)| *entry += scaled * own);
+impl<'c> Steps<'c> {
+    fn new(cones: &'c [Cone], basis: &'c DMatrix<f64>, load: f64, by: By) -> Self {
+        let barrier = (by == By::Hessian).then(|| Barrier::new(cones, basis, load));
+        Self { cones, basis, load, barrier }
+    }
+
+    /// The step of y at these forces; its length in the local metric of the barrier.
+    fn of_forces(&mut self, x: &DVector<f64>, step: &mut [f64]) -> Option<f64> {
+        if let Some(barrier) = &mut self.barrier {
+            barrier.evaluate(x.as_slice(), 0.0);
+            return barrier.step(step);
         }
-    };
-    let square = 1.0 / (load * load);
-    for cone in cones {
-        let n = x[cone.normal] - s;
-        let Some((t, r, factor)) = cone.tangential else {
-            by_x[cone.normal] -= 1.0 / n;
-            gradient[p] += 1.0 / n;
-            add_square(1.0, &[(cone.normal, 1.0 / n)], -1.0 / n);
-            continue;
-        };
-        let (ut, us) = (factor * x[t], factor * x[r]);
-        let size = hypot(ut, us);
-        let q = (n - size) * (n + size);
-        // -ln q with q = n^2 - ut^2 - us^2.
-        let (dn, dt, ds) = (-2.0 * n / q, 2.0 * ut / q, 2.0 * us / q);
-        by_x[cone.normal] += dn;
-        by_x[t] += factor * dt;
-        by_x[r] += factor * ds;
-        gradient[p] -= dn;
-        add_square(1.0, &[(cone.normal, dn), (t, factor * dt), (r, factor * ds)], -dn);
-        add_square(-2.0 / q, &[(cone.normal, 1.0)], -1.0);
-        for axis in [t, r] {
-            add_square(2.0 / q, &[(axis, factor)], 0.0);
+        by_squares(Squares::new(self.cones, self.basis, self.load, x, 0.0), 0.0, step)
+    }
+
+    /// The step of y and s where, besides, there are the barrier -weight s / load, and that of s below the load.
+    fn of_reserve(&mut self, x: &DVector<f64>, s: f64, weight: f64, step: &mut [f64]) -> Option<f64> {
+        let (room, along) = (self.load - s, weight / self.load);
+        if let Some(barrier) = &mut self.barrier {
+            barrier.evaluate(x.as_slice(), s);
+            barrier.add(1.0 / room - along, 1.0 / (room * room));
+            return barrier.step(step);
         }
+        let mut squares = Squares::new(self.cones, self.basis, self.load, x, s);
+        squares.add(1.0 / room, -1.0);
+        by_squares(squares, -along, step)
     }
-    by_x.axpy(square, x, 1.0);
-    for (along, row) in by_x.iter().zip(rows.as_slice().chunks_exact(p.max(1))) {
-        gradient.as_mut_slice()[..p].iter_mut().zip(row).for_each(|(sum, part)| *sum += along * part);
-    }
-    for i in 0..p {
-        hessian[(i, i)] += square;
-    }
-    Barrier { gradient, hessian }
 }
 
-/// The derivative with respect to (y, s) of a sum of components of x and of s.
-fn fill_row(row: &mut [f64], rows: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) {
-    let p = rows.nrows();
-    row[..p].fill(0.0);
-    for &(place, factor) in parts {
-        let own = &rows.as_slice()[place * p..][..p];
-        row.iter_mut().zip(own).for_each(|(sum, part)| *sum += factor * part);
+fn by_squares(squares: Squares, along: f64, step: &mut [f64]) -> Option<f64> {
+    let (found, length) = squares.step(step.len(), along)?;
+    step.copy_from_slice(found.as_slice());
+    Some(length)
+}
+
+/// Writes `part` of the change of forces along the basis by `step`, added to the forces.
+fn moved(x: &DVector<f64>, basis: &DMatrix<f64>, step: &[f64], part: f64, out: &mut DVector<f64>) {
+    out.copy_from(x);
+    for (column, by) in basis.as_slice().chunks_exact(x.len().max(1)).zip(step) {
+        out.iter_mut().zip(column).for_each(|(out, along)| *out += part * by * along);
     }
-    row[p] = by_s;
 }
 
 /// Newton's method to the centre, from forces inside all cones.
 fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>, by: By) -> DVector<f64> {
-    let p = basis.ncols();
-    let rows = basis.transpose();
-    let newton = |x: &DVector<f64>| match by {
-        By::Hessian => {
-            let Barrier { gradient, hessian } = barrier(cones, &rows, load, x, 0.0);
-            let right = -gradient.rows(0, p);
-            let factors = hessian.view((0, 0), (p, p)).into_owned().cholesky()?;
-            let step = factors.solve(&right);
-            // The length of the step in the local metric of the barrier.
-            let length = right.dot(&step).max(0.0).sqrt();
-            Some((step, length))
-        }
-        By::Squares => Squares::new(cones, basis, load, x, 0.0).step(p, 0.0),
-    };
+    let mut steps = Steps::new(cones, basis, load, by);
+    let mut step = Vector::zeros(basis.ncols());
+    let mut next = x.clone();
     for _ in 0..STEPS {
-        let Some((step, length)) = newton(&x) else { break };
+        let Some(length) = steps.of_forces(&x, &mut step) else { break };
         let part = if length > 0.25 { 1.0 / (1.0 + length) } else { 1.0 };
-        let next = &x + basis * &step * part;
+        moved(&x, basis, &step, part, &mut next);
         if least_reserve(cones, &next) <= 0.0 {
             break;
         }
-        x = next;
+        std::mem::swap(&mut x, &mut next);
         if length < 1e-9 {
             break;
         }
@@ -181,55 +154,35 @@ fn enter(
     (decide, by): (bool, By),
 ) -> Result<DVector<f64>, DVector<f64>> {
     let p = basis.ncols();
-    let rows = basis.transpose();
-    // Besides the barrier -weight s / load, and s below the load.
-    let newton = |x: &DVector<f64>, s: f64, weight: f64| {
-        let room = load - s;
-        match by {
-            By::Hessian => {
-                let Barrier { mut gradient, mut hessian } = barrier(cones, &rows, load, x, s);
-                gradient[p] += 1.0 / room - weight / load;
-                hessian[(p, p)] += 1.0 / (room * room);
-                let right = -gradient;
-                let factors = hessian.cholesky()?;
-                let step = factors.solve(&right);
-                let length = right.dot(&step).max(0.0).sqrt();
-                Some((step, length))
-            }
-            By::Squares => {
-                let mut squares = Squares::new(cones, basis, load, x, s);
-                squares.add(1.0 / room, -1.0);
-                squares.step(p + 1, -weight / load)
-            }
-        }
-    };
+    let mut steps = Steps::new(cones, basis, load, by);
+    let (mut step, mut next) = (Vector::zeros(p + 1), x.clone());
     let mut s = least_reserve(cones, &x) - load;
     let mut weight = 1.0;
     // On the path the distance of s from its maximum is the degree over the weight.
     let degree = 2.0 * cones.len() as f64 + 1.0;
     while degree / weight > GAP {
-        let mut moved = false;
+        let mut has_moved = false;
         for _ in 0..INNER {
-            let Some((step, length)) = newton(&x, s, weight) else { break };
-            let change = basis * step.rows(0, p);
-            let inside = |part: f64| {
-                let (mut next, slack) = (x.clone(), s + step[p] * part);
-                next.axpy(part, &change, 1.0);
-                (least_reserve(cones, &next) > slack && slack < load).then_some((next, slack))
+            let Some(length) = steps.of_reserve(&x, s, weight, &mut step) else { break };
+            let mut inside = |part: f64| {
+                let slack = s + step[p] * part;
+                moved(&x, basis, &step[..p], part, &mut next);
+                (least_reserve(cones, &next) > slack && slack < load).then_some(slack)
             };
             // Far from the path the step is as long as the cones allow, near it a full step.
             let mut part = 1.0;
-            let next = loop {
+            let slack = loop {
                 match inside(part) {
-                    Some(next) if part == 1.0 && length < 0.25 => break Some(next),
+                    Some(slack) if part == 1.0 && length < 0.25 => break Some(slack),
                     Some(_) => break inside(if length < 0.25 { part } else { 0.9 * part }),
                     None if part < 1e-9 => break None,
                     None => part *= 0.7,
                 }
             };
-            let Some((next, slack)) = next else { break };
-            (x, s) = (next, slack);
-            moved = true;
+            let Some(slack) = slack else { break };
+            std::mem::swap(&mut x, &mut next);
+            s = slack;
+            has_moved = true;
             if least_reserve(cones, &x) > START * load || (s > 0.0 && length < 0.5) {
                 return Ok(x);
             }
@@ -237,7 +190,7 @@ fn enter(
                 break;
             }
         }
-        if !moved || (decide && s < -2.0 * degree / weight * load) {
+        if !has_moved || (decide && s < -2.0 * degree / weight * load) {
             break;
         }
         weight *= 30.0;

@@ -74,7 +74,7 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::*;
-    use crate::contact_problem::{Unsolved, solve};
+    use crate::contact_problem::solve;
 
     /// Four joints of a chain stick to a floor, and its tip slides past the last of them, above which two links stand
     /// upright. Beside that joint friction draws the tip down faster than its normal force lifts it.
@@ -151,8 +151,10 @@ mod tests {
         let (mu, slip) = ([0.443; 5], [None, None, None, None, Some(Vector2::new(-1.0, 0.0))]);
         let problem = Problem { w: &w, beta: &beta, mu: &mu, slip: &slip, noise: None };
         assert!(own_f(&problem, 4).unwrap() > 4.0);
-        let solved = solve(&problem, None);
-        assert!(matches!(solved, Err(Unsolved::Jam { contact: 4, f }) if f < -1e-4), "{solved:?}");
+        assert!(matches!(jam(&problem), Some((4, f)) if f < -1e-4), "{:?}", jam(&problem));
+        // One motion is left, in which that joint opens: not Newton's method, but the choice of contacts that press finds it.
+        let solved = solve(&problem, None).unwrap();
+        assert!(solved.modes[3] == Mode::Separate && solved.force[12] > 2.0, "{:?}", solved.modes);
         // Without friction there is no jam.
         assert!(solve(&Problem { mu: &[0.0; 5], ..problem }, None).is_ok());
     }

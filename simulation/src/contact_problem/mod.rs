@@ -15,6 +15,7 @@
 //! Theory: docs/theory.md, section 17.10.
 
 mod another;
+mod barrier;
 mod centre;
 mod certified;
 mod common_slip;
