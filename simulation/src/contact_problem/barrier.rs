@@ -132,9 +132,7 @@ impl<'c> Barrier<'c> {
             factor[j * stride + j..j * stride + m].iter_mut().for_each(|entry| *entry /= root);
         }
         // L v = -gradient, then L^T step = v; the length is that of v.
-        for i in 0..m {
-            step[i] = -self.gradient[i];
-        }
+        step.iter_mut().zip(&self.gradient[..m]).for_each(|(step, gradient)| *step = -gradient);
         for j in 0..m {
             step[j] /= factor[j * stride + j];
             let known = step[j];
