@@ -3,6 +3,7 @@
 
 use hodograph::{ComponentKind, Contacts, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
+use smallvec::SmallVec;
 
 use crate::angles::Angles;
 use crate::contact_problem::Problem;
@@ -10,6 +11,9 @@ use crate::torques::WithTorques;
 
 /// Two contacts are coupled if their entry of W, relative to their own mobilities, is above this.
 const COUPLED: f64 = 1e-12;
+
+/// Lists of so many rows need no memory from the heap.
+const FEW: usize = 12;
 
 /// The impulses through which contacts are coupled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -290,6 +294,9 @@ impl ClosedContacts {
 
     /// The change of speeds with the least kinetic energy that makes these rows of the velocity zero.
     pub fn without(&self, rows: &[usize], velocity: &DVector<f64>) -> DVector<f64> {
+        // Nothing moves across a plane of motion, and no impulse there changes anything.
+        let moves = |&row: &usize| self.coupled[(row, row)] > 0.0;
+        let rows: SmallVec<[usize; FEW]> = rows.iter().copied().filter(moves).collect();
         if rows.is_empty() {
             return DVector::zeros(self.response.nrows());
         }
