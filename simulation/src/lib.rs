@@ -61,6 +61,7 @@ mod mode_selection;
 mod motion;
 mod options;
 mod pair;
+mod past_jam;
 mod phase;
 mod poisson_at_once;
 mod rattling;

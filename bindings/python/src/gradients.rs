@@ -2,7 +2,7 @@
 
 use hodograph::{ComponentKind, Mechanism as _, State};
 use hodograph_gradients::{
-    By, Fit, FitError, FitTask, GradientError, Orbit, OrbitError, Periodic, Return, Trajectory,
+    By, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return, Trajectory,
     differentiate, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
@@ -59,6 +59,10 @@ pub struct Fitted<'py> {
     units: Vec<f64>,
     #[pyo3(item)]
     variables: Vec<String>,
+    #[pyo3(item)]
+    huber: Option<f64>,
+    #[pyo3(item)]
+    cap: Option<f64>,
     #[pyo3(item)]
     bootstrap: usize,
     #[pyo3(item)]
@@ -266,6 +270,7 @@ pub fn fit<'py>(
         measured: &fitted.measured,
         units: &fitted.units,
         variables: &by,
+        loss: fitted.huber.map(Loss::Huber).or(fitted.cap.map(Loss::Cap)).unwrap_or_default(),
         bootstrap: fitted.bootstrap,
         seed: fitted.seed,
     };
@@ -288,6 +293,7 @@ pub fn fit<'py>(
     all.set_item("spread", spread.as_ref().map(|spread| PyArray1::from_slice(py, spread)))?;
     all.set_item("rms", rms)?;
     all.set_item("differences", differences)?;
+    all.set_item("outliers", found.outliers)?;
     all.set_item("without_derivatives", &found.without_derivatives)?;
     all.set_item("steps", found.steps)?;
     let surfaces = surfaces.iter().map(|(contact, surface)| {

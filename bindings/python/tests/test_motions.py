@@ -235,6 +235,11 @@ def test_parameters_are_fitted_to_motions():
     noisy = [{name: column if name == "time" else column + 1e-3 * np.r_[0, rng.normal(size=len(column) - 1)] for name, column in motion.items()} for motion in motions]
     fit = m.fit(["e"], noisy, outputs=["q1", "q2"], errors={"q1": 1e-3, "q2": 1e-3}, bootstrap=3, **{**surface, "e": 0.55})
     assert abs(fit.values["e"] - 0.6) < 5 * fit.errors["e"] and fit.rms == pytest.approx(1.0, abs=0.3) and fit.spread["e"] > 0
+    noisy[1]["q1"] = noisy[1]["q1"] + 0.2
+    robust = m.fit(["e"], noisy, outputs=["q1", "q2"], errors={"q1": 1e-3, "q2": 1e-3}, huber=3.0, **{**surface, "e": 0.55})
+    assert robust.outliers > 10 and fit.outliers == 0 and abs(robust.values["e"] - 0.6) < 0.01
+    with pytest.raises(hodograph.ArgumentError, match="exclude each other"):
+        m.fit(["e"], noisy, huber=3.0, cap=3.0, **surface)
     with pytest.raises(hodograph.ArgumentError, match="there is no column of a motion `time`"):
         m.fit(["e"], [{"q1": [0.0]}], **surface)
 

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::family::{resolve_surfaces, value_of, with_values};
 use crate::random::next_random;
 use crate::trajectory::{Trajectory, follow};
-use crate::{By, GradientError, differentiate};
+use crate::{By, GradientError, Loss, differentiate};
 
 /// The task of a fit.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct FitTask<'a> {
     pub units: &'a [f64],
     /// parameters, mu and e
     pub variables: &'a [By],
+    /// what a difference costs
+    pub loss: Loss,
     /// number of bootstrap samples: trajectories are drawn with replacement and fitted again
     pub bootstrap: usize,
     /// the seed of the bootstrap samples
@@ -40,9 +42,11 @@ pub struct Fit {
     pub surfaces: Vec<(usize, Surface<f64>)>,
     /// root mean square of the differences, in their units
     pub rms: f64,
+    /// the number of differences that cost less than their squares
+    pub outliers: usize,
     /// the number of differences
     pub differences: usize,
-    /// standard errors from the curvature of the sum of squares and the remaining differences
+    /// standard errors from the curvature of the sum of what the differences cost, and from what remains of it
     pub errors: Vec<f64>,
     /// correlations of the values
     pub correlations: DMatrix<f64>,
@@ -108,10 +112,10 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
     let all: Vec<usize> = (0..task.trajectories.len()).collect();
     let (values, here, steps) = problem.minimise(first, &all, STEPS)?;
     let scale: Vec<f64> = values.iter().map(|value| if *value == 0.0 { 1.0 } else { value.abs() }).collect();
-    let count = here.differences.len();
+    let count = here.roots.len();
     let relative =
         DMatrix::from_fn(count, values.len(), |row, column| here.by[(row, column)] * scale[column]);
-    let square = here.differences.norm_squared();
+    let square = here.roots.norm_squared();
     let decomposed = (relative.transpose() * &relative).symmetric_eigen();
     let greatest = decomposed.eigenvalues.max().max(f64::MIN_POSITIVE);
     let least = UNDETERMINED * UNDETERMINED * greatest;
@@ -140,7 +144,8 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
     Ok(Fit {
         surfaces: fitted.surfaces,
         errors: errors.collect(),
-        rms: (square / count.max(1) as f64).sqrt(),
+        rms: (here.square / count.max(1) as f64).sqrt(),
+        outliers: here.outliers,
         differences: count,
         correlations,
         undetermined,
@@ -163,6 +168,11 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
     if let Some(unit) = task.units.iter().find(|unit| !(unit.is_finite() && **unit > 0.0)) {
         return bad(format!("the unit of a measured quantity is {unit}: it must be positive"));
     }
+    if let Loss::Huber(size) | Loss::Cap(size) = task.loss
+        && !(size.is_finite() && size > 0.0)
+    {
+        return bad(format!("differences cost less than their squares from {size} on: it must be positive"));
+    }
     if task.bootstrap > 0 && task.trajectories.len() < 2 {
         return bad("a bootstrap draws among trajectories: it needs two at least".to_owned());
     }
@@ -184,9 +194,14 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
 
 /// The differences between measurements and motions for some values.
 struct Differences {
-    differences: DVector<f64>,
+    /// the numbers whose squares the differences cost
+    roots: DVector<f64>,
     /// their derivatives with respect to the variables
     by: DMatrix<f64>,
+    /// the sum of the squares of the differences
+    square: f64,
+    /// the number of differences that cost less than their squares
+    outliers: usize,
     /// trajectories without derivatives
     without: Vec<String>,
 }
@@ -251,8 +266,15 @@ impl Problem<'_> {
                 }
             }
         }
+        let square = all.iter().map(|difference| difference * difference).sum();
+        let outliers = all.iter().filter(|difference| difference.abs() > self.task.loss.size()).count();
+        for (difference, row) in all.iter_mut().zip(rows.chunks_exact_mut(values.len().max(1))) {
+            let (root, slope) = self.task.loss.root(*difference);
+            *difference = root;
+            row.iter_mut().for_each(|by| *by *= slope);
+        }
         let by = DMatrix::from_row_slice(all.len(), values.len(), &rows);
-        Ok(Differences { differences: DVector::from_vec(all), by, without })
+        Ok(Differences { roots: DVector::from_vec(all), by, square, outliers, without })
     }
 
     /// Derivatives of the differences of a trajectory by finite differences, by rows.
@@ -292,8 +314,8 @@ impl Problem<'_> {
         let mut made = 0;
         while made < steps {
             let normal = here.by.transpose() * &here.by;
-            let slope = here.by.transpose() * &here.differences;
-            let square = here.differences.norm_squared();
+            let slope = here.by.transpose() * &here.roots;
+            let square = here.roots.norm_squared();
             let mut next = None;
             while damping < MAX_DAMPING {
                 // Damping is relative to the curvature along each variable, so that their units do not
@@ -309,7 +331,7 @@ impl Problem<'_> {
                 // If the values are refused or their motions cannot be simulated, a shorter step is tried.
                 if let Some(trial) = trial
                     && let Ok(there) = self.evaluate(&trial, places)
-                    && there.differences.norm_squared() < square
+                    && there.roots.norm_squared() < square
                 {
                     next = Some((trial, there));
                     break;
@@ -317,7 +339,7 @@ impl Problem<'_> {
                 damping *= DAMPING_INCREASE;
             }
             let Some((trial, there)) = next else { break };
-            let fallen = square - there.differences.norm_squared();
+            let fallen = square - there.roots.norm_squared();
             (values, here) = (trial, there);
             damping = (damping * DAMPING_DECREASE).max(f64::EPSILON);
             made += 1;

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::random::next_random;
 use crate::trajectory::follow;
-use crate::{By, FitError, FitTask, Trajectory, fit};
+use crate::{By, FitError, FitTask, Loss, Trajectory, fit};
 
 /// The quantities that are compared, and in what they are counted.
 #[derive(Clone, Copy, Debug)]
@@ -84,6 +84,7 @@ pub fn floor(
         measured: measure.measured,
         units: measure.units,
         variables,
+        loss: Loss::Square,
         bootstrap: 0,
         seed: 0,
     };

@@ -1,7 +1,7 @@
 //! Fits to motions that were made with known values.
 
 use hodograph::{Law, Mechanism, State};
-use hodograph_gradients::{By, FitError, FitTask, Trajectory, fit};
+use hodograph_gradients::{By, FitError, FitTask, Loss, Trajectory, fit};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Simulation;
 use nalgebra::DMatrix;
@@ -36,7 +36,8 @@ fn throws(values: ([f64; 2], [f64; 3]), error: f64) -> Vec<Trajectory> {
 }
 
 fn task<'a>(trajectories: &'a [Trajectory], variables: &'a [By], bootstrap: usize) -> FitTask<'a> {
-    FitTask { trajectories, measured: &[0, 1, 2], units: &[1e-3; 3], variables, bootstrap, seed: 1 }
+    let loss = Loss::Square;
+    FitTask { trajectories, measured: &[0, 1, 2], units: &[1e-3; 3], variables, loss, bootstrap, seed: 1 }
 }
 
 fn rod() -> InterpretedMechanism {
@@ -85,6 +86,31 @@ fn errors_are_those_of_the_data() {
         assert!(*spread > 0.02 * error && *spread < 20.0 * error, "{spread} {error}");
     }
     assert!((found.correlations[(0, 0)] - 1.0).abs() < 1e-12 && found.correlations[(0, 1)].abs() < 1.0);
+}
+
+/// One throw was measured wrongly, by centimetres: squares let it decide, the other losses do not.
+#[test]
+fn wrong_measurements_decide_little_by_robust_losses() {
+    let mut throws = throws(([0.23, 0.61], [1.0, 1.0, 9.81]), 1e-3);
+    for row in 20..35 {
+        throws[2].samples[(row, 0)] += 0.05;
+    }
+    let variables = [By::Friction(None), By::Restitution(None)];
+    let off = |loss: Loss| {
+        let task = FitTask { loss, ..task(&throws, &variables, 0) };
+        let found = fit(&rod(), &options(0.2, 0.55, Law::Poisson), &task).unwrap();
+        assert_eq!(found.differences, 4 * 35 * 3);
+        // the errors of measurement are below one unit, the wrong ones above fifty
+        let outliers = if loss == Loss::Square { 0 } else { 15 };
+        assert_eq!(found.outliers, outliers, "{loss:?}");
+        assert!(found.rms > 8.0, "all differences are told: {found:?}");
+        (found.values[0] - 0.23).abs()
+    };
+    let (square, huber, cap) = (off(Loss::Square), off(Loss::Huber(3.0)), off(Loss::Cap(3.0)));
+    assert!(huber < 0.2 * square && cap < 0.2 * square, "{square} {huber} {cap}");
+    let task = FitTask { loss: Loss::Cap(-1.0), ..task(&throws, &variables, 0) };
+    let refused = fit(&rod(), &options(0.2, 0.55, Law::Poisson), &task);
+    assert!(matches!(&refused, Err(FitError::BadRequest(what)) if what.contains("positive")), "{refused:?}");
 }
 
 #[test]

@@ -79,8 +79,8 @@ class Branch(NamedTuple):
 
 class Fit:
     """Fitted values: ``values``, their standard ``errors`` and, with draws, their ``spread``, by name; ``correlations`` (v, v); ``undetermined``: directions in
-    which the values change no difference; ``rms`` of the ``differences`` in their units; ``surfaces``: {contact: mu, e, law} with these values;
-    ``without_derivatives``: names of motions that were fitted by differences; ``steps``."""
+    which the values change no difference; ``rms`` of the ``differences`` in their units, of which ``outliers`` cost less than their squares; ``surfaces``:
+    {contact: mu, e, law} with these values; ``without_derivatives``: names of motions that were fitted by differences; ``steps``."""
 
     def __init__(self, found: dict[str, Any], names: tuple[str, ...]) -> None:
         named = lambda numbers: dict(zip(names, (float(number) for number in numbers)))  # noqa: E731
@@ -91,6 +91,7 @@ class Fit:
         self.undetermined: list[dict[str, float]] = [named(direction) for direction in found["undetermined"]]
         self.rms: float = found["rms"]
         self.differences: int = found["differences"]
+        self.outliers: int = found["outliers"]
         self.without_derivatives: list[str] = found["without_derivatives"]
         self.steps: int = found["steps"]
         self.surfaces: dict[str, dict[str, Any]] = {

@@ -562,12 +562,14 @@ class Mechanism(_native.Mechanism):
         self, variables: Sequence[str], motions: Any, *, outputs: Optional[Sequence[str]] = None, errors: Optional[Mapping[str, float]] = None,
         bootstrap: int = 0, seed: int = 0, mu: Optional[float] = None, e: Optional[float] = None, law: Optional[str] = None,
         tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None, max_step: Optional[float] = None,
+        huber: Optional[float] = None, cap: Optional[float] = None,
     ) -> Fit:
         """Fits parameters, 'mu' and 'e' (or 'mu.CONTACT') to measured motions, from the values of the model and the options, as :class:`Fit`.
 
         ``motions``: a table, or a list of tables: columns ``time`` (or ``t``), s, and coordinates and independent speeds by name. The first row of each is
         its start, taken as it is; NaN in later rows is what was not measured. ``outputs``: the columns that are compared (else all); ``errors``: by what the
-        differences of a column are divided, by name (else the standard deviation of the column); ``bootstrap``: so often motions are drawn anew."""
+        differences of a column are divided, by name (else the standard deviation of the column); ``bootstrap``: so often motions are drawn anew.
+        ``huber``: differences beyond so many errors count in proportion to their size, not to its square; ``cap``: as if they were so large."""
         names = [*self._names_of("coordinates"), *self._names_of("speeds")]
         start = [quantity.value for quantity in (*self.coordinates, *self.speeds)]
         all_motions = list(motions) if isinstance(motions, (list, tuple)) else [motions]
@@ -591,8 +593,10 @@ class Mechanism(_native.Mechanism):
             raise ArgumentError("`errors`: expected positive numbers", kind="bad_option", place="errors")
         fitted = {
             "trajectories": trajectories, "measured": [names.index(name) for name in wanted], "units": units, "variables": list(variables),
-            "bootstrap": bootstrap, "seed": seed,
+            "huber": optional_number(huber, "huber"), "cap": optional_number(cap, "cap"), "bootstrap": bootstrap, "seed": seed,
         }  # fmt: skip
+        if huber is not None and cap is not None:
+            raise ArgumentError("`huber` and `cap` exclude each other", kind="bad_option", place="cap")
         return Fit(self._fit(fitted, self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)), tuple(variables))
 
     def equations(self, format: str = "text") -> str:

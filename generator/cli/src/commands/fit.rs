@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use hodograph::{ComponentKind, Mechanism as _, Surface};
-use hodograph_gradients::{By, Fit, FitError, FitTask, fit};
+use hodograph_gradients::{By, Fit, FitError, FitTask, Loss, fit};
 use hodograph_interpreter::InterpretedMechanism;
 use serde::Serialize;
 
@@ -42,6 +42,13 @@ pub struct Arguments {
     /// the standard deviation of the column]
     #[arg(long, value_name = "NAME=NUMBER,..", value_delimiter = ',')]
     error: Vec<String>,
+    /// differences beyond so many errors count in proportion to their size, not to its square (Huber), so that motions that
+    /// went another way do not decide alone
+    #[arg(long, value_name = "ERRORS", conflicts_with = "cap")]
+    huber: Option<f64>,
+    /// differences beyond so many errors count as much as if they were so large
+    #[arg(long, value_name = "ERRORS")]
+    cap: Option<f64>,
     /// number of bootstrap samples: trajectories are drawn with replacement and fitted again, which gives the
     /// spread of the values
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
@@ -79,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 measured: &motions.measured,
                 units: &units,
                 variables: &by,
+                loss: arguments.loss(),
                 bootstrap: arguments.bootstrap,
                 seed: arguments.seed,
             };
@@ -87,6 +95,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let outputs = motions.names(&mechanism);
             answer.units = outputs.iter().cloned().zip(units.iter().copied()).collect();
             answer.outputs = outputs;
+            answer.outliers = (arguments.loss() != Loss::Square).then_some(found.outliers);
             answer.model = arguments.model.display().to_string();
             answer.options = arguments.motion.given();
             answer.motions = motions.trajectories.iter().map(|one| one.name.clone()).collect();
@@ -104,6 +113,11 @@ fn stop(error: FitError) -> Stop {
 }
 
 impl Arguments {
+    /// What a difference costs.
+    fn loss(&self) -> Loss {
+        self.huber.map(Loss::Huber).or(self.cap.map(Loss::Cap)).unwrap_or_default()
+    }
+
     /// The divisors of the differences of each column.
     fn units(&self, motions: &Motions, mechanism: &InterpretedMechanism) -> Outcome<Vec<f64>> {
         let mut units = motions.deviations();
@@ -136,6 +150,9 @@ struct Answer<'a> {
     undetermined: Vec<Named<'a, f64>>,
     rms: f64,
     differences: usize,
+    /// how many of them cost less than their squares, with `--huber` or `--cap`
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outliers: Option<usize>,
     trajectories: usize,
     without_derivatives: Vec<String>,
     steps: usize,
@@ -176,6 +193,7 @@ impl<'a> Answer<'a> {
             undetermined: found.undetermined.iter().map(|direction| named(direction)).collect(),
             rms: found.rms,
             differences: found.differences,
+            outliers: None,
             trajectories,
             without_derivatives: found.without_derivatives.clone(),
             steps: found.steps,
@@ -213,6 +231,9 @@ impl<'a> Answer<'a> {
             self.trajectories,
             self.steps
         );
+        if let Some(outliers) = self.outliers {
+            out += &format!("{outliers} of the differences cost less than their squares\n");
+        }
         if !self.without_derivatives.is_empty() {
             let names = self.without_derivatives.join(", ");
             out += &format!("not differentiable, fitted by differences: {names}\n");
