@@ -105,11 +105,20 @@ const STEP: f64 = 1e-5;
 /// [`FitError`]
 pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'_>) -> Result<Fit, FitError> {
     check(mechanism, task)?;
-    let problem = Problem { mechanism, options, task };
+    let problem = Problem { mechanism, options, task, loss: task.loss };
     let first: Result<Vec<f64>, String> =
         task.variables.iter().map(|&by| value_of(mechanism, options, by)).collect();
     let first = first.map_err(FitError::BadRequest)?;
     let all: Vec<usize> = (0..task.trajectories.len()).collect();
+    let (first, before) = match task.loss {
+        // Far from a minimum most differences may be beyond the cap, where nothing tells a direction.
+        Loss::Cap(size) => {
+            let (first, _, before) =
+                Problem { loss: Loss::Huber(size), ..problem }.minimise(first, &all, STEPS)?;
+            (first, before)
+        }
+        _ => (first, 0),
+    };
     let (values, here, steps) = problem.minimise(first, &all, STEPS)?;
     let scale: Vec<f64> = values.iter().map(|value| if *value == 0.0 { 1.0 } else { value.abs() }).collect();
     let count = here.roots.len();
@@ -151,7 +160,7 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
         undetermined,
         spread,
         without_derivatives: here.without,
-        steps,
+        steps: before + steps,
         values,
     })
 }
@@ -206,10 +215,12 @@ struct Differences {
     without: Vec<String>,
 }
 
+#[derive(Clone, Copy)]
 struct Problem<'a> {
     mechanism: &'a InterpretedMechanism,
     options: &'a Options,
     task: &'a FitTask<'a>,
+    loss: Loss,
 }
 
 impl Problem<'_> {
@@ -267,9 +278,9 @@ impl Problem<'_> {
             }
         }
         let square = all.iter().map(|difference| difference * difference).sum();
-        let outliers = all.iter().filter(|difference| difference.abs() > self.task.loss.size()).count();
+        let outliers = all.iter().filter(|difference| difference.abs() > self.loss.size()).count();
         for (difference, row) in all.iter_mut().zip(rows.chunks_exact_mut(values.len().max(1))) {
-            let (root, slope) = self.task.loss.root(*difference);
+            let (root, slope) = self.loss.root(*difference);
             *difference = root;
             row.iter_mut().for_each(|by| *by *= slope);
         }
