@@ -93,7 +93,7 @@ impl Transition<'_> {
     }
 
     /// Whether these modes differ from those of the contacts.
-    pub(crate) fn differs(&self, contacts: &[usize], modes: &[Mode]) -> bool {
+    fn differs(&self, contacts: &[usize], modes: &[Mode]) -> bool {
         contacts.iter().zip(modes).any(|(&contact, mode)| {
             !matches!(
                 (self.front.phases[contact], mode),
@@ -102,8 +102,8 @@ impl Transition<'_> {
         })
     }
 
-    /// The modes after an implicit step over this time, with forces of that step divided by it.
-    pub(crate) fn choice_of(&self, contacts: &[usize], solution: &Solution, h: f64) -> Choice {
+    /// The modes after an implicit step over this time.
+    fn choice_of(&self, contacts: &[usize], solution: &Solution, h: f64) -> Choice {
         let decision = |(&contact, mode): (&usize, &Mode)| match mode {
             Mode::Separate => Decision::Separate,
             Mode::Stick => Decision::Stick,

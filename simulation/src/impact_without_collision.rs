@@ -97,7 +97,7 @@ impl Transition<'_> {
                 self.apply(&closed, was, &choice);
                 return self.crowded(self.front.t);
             }
-            Jam::Unsolved => return self.go_past_a_jam(was, alone),
+            Jam::Unsolved => return self.go_past_a_jam(&closed, was, alone),
         };
         self.front.resting = false;
         let after = hit.after.clone();

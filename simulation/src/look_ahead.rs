@@ -161,7 +161,7 @@ impl Transition<'_> {
 
     /// The modes that the state at the end of a step requires; `was` are the phases before the event. A contact that
     /// has opened since has the slip that it had: it does not begin from rest if it closes again.
-    fn chosen_at(
+    pub(crate) fn chosen_at(
         &self,
         contacts: &[usize],
         was: &[Phase],
@@ -202,7 +202,7 @@ impl Transition<'_> {
     }
 
     /// Whether these decisions are the present modes.
-    fn go_on(&self, contacts: &[usize], choice: &Choice) -> bool {
+    pub(crate) fn go_on(&self, contacts: &[usize], choice: &Choice) -> bool {
         contacts.iter().zip(&choice.decisions).all(|(&contact, decision)| {
             matches!(
                 (self.front.phases[contact], decision),
