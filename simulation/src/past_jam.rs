@@ -17,6 +17,9 @@ const FIRST: f64 = 1e-11;
 const LONGER: f64 = 8.0;
 const TRIALS: i32 = 8;
 
+/// The step past a jam, and the modes that are chosen at its end.
+type Past = (Step, (Question, Choice));
+
 impl Transition<'_> {
     /// Continues past a jam of these closed contacts at which forces are finite; the error `alone` if there are no modes in
     /// which nothing jams.
@@ -35,11 +38,7 @@ impl Transition<'_> {
 
     /// The next instant at which f of a contact is as negative as it is positive here, at the rates of the present modes, and
     /// the modes that are chosen there, if they are others.
-    fn past_a_jam(
-        &self,
-        contacts: &[usize],
-        was: &[Phase],
-    ) -> Result<Option<(Step, (Question, Choice))>, SimulationError> {
+    fn past_a_jam(&self, contacts: &[usize], was: &[Phase]) -> Result<Option<Past>, SimulationError> {
         let Ok(here) = self.motion(&self.closed()).evaluate(self.front.t, &self.front.y) else {
             return Ok(None);
         };
