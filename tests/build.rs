@@ -49,6 +49,21 @@ fn main() {
 const DIFFERENTIATED: [&str; 4] =
     ["accelerations", "inverse_dynamics", "coordinate_rates", "configuration_residual"];
 
+/// The beginnings of the names of routines that tests call for four states at once: those of every kind of answer,
+/// with and without divisors.
+const IN_LANES: [&str; 10] = [
+    "accelerations",
+    "inverse_dynamics",
+    "mass_matrix",
+    "coordinate_rates",
+    "kinetic_energy",
+    "position_",
+    "gap_",
+    "contact_velocity_",
+    "free_acceleration_",
+    "reduced_matrix_",
+];
+
 /// What such a routine gets for an argument.
 fn dual(argument: &str) -> &'static str {
     match argument {
@@ -93,6 +108,23 @@ fn dual_call(method: &Signature) -> String {
     format!("Self::dual_machine(at).{}({})", method.name, passed.join(", "))
 }
 
+/// The call for several states `at`, and the machines of them.
+fn call_in_lanes(method: &Signature, path: &str, name: &str) -> String {
+    let of = |record: &str, list: &str| {
+        format!("&{path}::{record}::<F64x4>::from_lanes(|lane| array(&at[lane].{list}).into())")
+    };
+    let passed = method.arguments.iter().map(|argument| match argument.name {
+        "time" => "F64x4::from_lanes(|lane| at[lane].time)".to_owned(),
+        "q" => of("Coordinates", "coordinates"),
+        "u" => of("Speeds", "speeds"),
+        "acceleration" => of("Speeds", "accelerations"),
+        "inputs" => of("Inputs", "inputs"),
+        other => panic!("{} has an argument {other} that is not known in lanes", method.name),
+    });
+    let passed = passed.collect::<Vec<_>>().join(", ");
+    format!("{path}::{name}::<F64x4>::from_lanes(|lane| Self::machine(&at[lane])).{}({passed})", method.name)
+}
+
 /// What makes a list of numbers of the `value` that a method answers; nothing for one that collisions and
 /// `mechanisms_by_slices.rs` call.
 fn flat(method: &Signature) -> Option<&'static str> {
@@ -125,6 +157,7 @@ fn write_module(text: &mut String, offered: &Interface, mechanism: &Mechanism) {
     let mut collisions = String::new();
     let mut duals = String::new();
     let mut in_places = String::new();
+    let (mut in_lanes, mut of_lanes) = (String::new(), String::new());
     for method in offered.methods.iter().filter(|method| !is_called_elsewhere(method)) {
         let (name, call) = (method.name.as_str(), call(method));
         if name.starts_with("collide_") {
@@ -144,6 +177,16 @@ fn write_module(text: &mut String, offered: &Interface, mechanism: &Mechanism) {
                 "            \"{name}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
             )
             .unwrap();
+            if IN_LANES.iter().any(|begin| name.starts_with(begin)) {
+                let call = call_in_lanes(method, &path, &offered.mechanism);
+                let flat = flat.replace("f64", "F64x4");
+                writeln!(of_lanes, "            \"{name}\",").unwrap();
+                writeln!(
+                    in_lanes,
+                    "            \"{name}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
+                )
+                .unwrap();
+            }
             if let Some(in_place) = &method.in_place {
                 // What is overwritten is the answer at another state.
                 let (into, passed) = (&in_place.into, passed(method));
@@ -185,6 +228,15 @@ impl Emitted for {module} {{
     fn in_place(&self) -> &'static [&'static str] {{
         &[
 {in_places}        ]
+    }}
+    fn of_lanes(&self) -> &'static [&'static str] {{
+        &[
+{of_lanes}        ]
+    }}
+    fn in_lanes(&self, routine: &str, at: &[Inputs; 4]) -> Option<Result<Vec<F64x4>, String>> {{
+        Some(match routine {{
+{in_lanes}            _ => return None,
+        }})
     }}
     fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>> {{
         let answer: Result<Vec<Dual64>, StateError> = match routine {{

@@ -19,6 +19,7 @@ mod mistakes_of_a_cart;
 mod mistakes_of_other_kinds;
 mod overconstrained;
 mod parts;
+mod polytopes;
 mod robust;
 mod second_road;
 mod shapes;

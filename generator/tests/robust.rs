@@ -162,7 +162,7 @@ fn the_largest_mechanism() {
 /// What is not looked at is said.
 #[test]
 fn too_many_parts_to_look_at() {
-    let frames: String = (0..2000).map(|i| format!("F{i} = N; ")).collect();
+    let frames: String = (0..8000).map(|i| format!("F{i} = N; ")).collect();
     let checked = check(&Source::file("many.mech", with(&format!("frames {{ {frames} }}"))));
     assert!(checked.mechanism.is_some());
     assert_eq!(checked.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>(), [codes::UNCHECKED]);

@@ -14,12 +14,12 @@ use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 use hodograph_random::Random;
 
-type V = [f64; 3];
+pub type V = [f64; 3];
 
 const POSES: usize = 10_000;
 
 /// Two free bodies, A with the first shape and B with the second.
-fn model(shapes: &str, contact: &str) -> Mechanism {
+pub fn model(shapes: &str, contact: &str) -> Mechanism {
     let text = format!(
         "mechanism Two;
 parameters {{ m: kg = 1, J: kg*m^2 = 0.1, k: m = 0.1 }}
@@ -50,16 +50,16 @@ fn random_state(random: &mut Random, m: &Mechanism) -> State {
 
 /// What the model says of a contact at a state.
 #[derive(Clone, Copy, Debug)]
-struct Said {
-    point: V,
-    normal: V,
-    gap: f64,
+pub struct Said {
+    pub point: V,
+    pub normal: V,
+    pub gap: f64,
 }
 
 /// The place and the axes of the two bodies.
-struct Pose {
-    at: [V; 2],
-    axes: [[V; 3]; 2],
+pub struct Pose {
+    pub at: [V; 2],
+    pub axes: [[V; 3]; 2],
 }
 
 pub fn evaluator<'m>(m: &'m Mechanism, state: &'m State, coordinates: Vec<HyperDual>) -> Evaluator<'m> {
@@ -100,26 +100,26 @@ fn pose(m: &Mechanism, state: &State) -> Pose {
     Pose { at: [a.0, b.0], axes: [a.1, b.1] }
 }
 
-fn plus(a: V, b: V, s: f64) -> V {
+pub fn plus(a: V, b: V, s: f64) -> V {
     [0, 1, 2].map(|i| a[i] + s * b[i])
 }
 
-fn scaled(a: V, s: f64) -> V {
+pub fn scaled(a: V, s: f64) -> V {
     a.map(|x| s * x)
 }
 
 /// Components along axes.
-fn along(v: V, axes: &[V; 3]) -> V {
+pub fn along(v: V, axes: &[V; 3]) -> V {
     [0, 1, 2].map(|i| dot3(v, axes[i]))
 }
 
-fn back(v: V, axes: &[V; 3]) -> V {
+pub fn back(v: V, axes: &[V; 3]) -> V {
     [0, 1, 2].map(|k| (0..3).map(|i| v[i] * axes[i][k]).sum())
 }
 
 /// Looks at random poses: `looks` compares what is said with what must be, and gives the largest difference.
 /// Where it gives none the pose does not count. The rates are compared for all.
-fn compare(name: &str, m: &Mechanism, looks: impl Fn(&[Said], &Pose) -> Option<f64>) {
+pub fn compare(name: &str, m: &Mechanism, looks: impl Fn(&[Said], &Pose) -> Option<f64>) {
     let mut random = Random::named(name);
     let (mut worst, mut worst_rate, mut worst_difference, mut seen) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
     while seen < POSES {
@@ -332,6 +332,18 @@ fn projection(kind: Kind, c: V) -> Option<(V, f64)> {
                 (true, true) => Some(([rim[0], rim[1], cap], 0.0)),
             }
         }
+        Kind::Cone => {
+            // of radius 0.2 and height 0.5, by the places on its profile: rim, apex, between them, and base
+            let (out, z) = (c[0].hypot(c[1]), c[2]);
+            let share = ((0.2 - out) * 0.2 + z * 0.5) / (0.04 + 0.25);
+            let mut places = vec![[0.2, 0.0], [0.0, 0.5]];
+            places.extend((0.0..=1.0).contains(&share).then_some([0.2 * (1.0 - share), 0.5 * share]));
+            places.extend((out < 0.2).then_some([out, 0.0]));
+            let far = |p: &[f64; 2]| (p[0] - out).hypot(p[1] - z);
+            let best = places.into_iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+            let within = z > 0.0 && out < 0.2 * (1.0 - z / 0.5);
+            (!within && out > 1e-6).then(|| ([best[0] * c[0] / out, best[0] * c[1] / out, best[1]], 0.0))
+        }
         Kind::Box => {
             // the nearest of all points of faces, edges and corners that lie beside c
             let half = [0.2, 0.3, 0.4];
@@ -370,6 +382,7 @@ fn spheres_on_solids() {
         ("sphere", Kind::Sphere, "sphere: 4*k"),
         ("capsule", Kind::Capsule, "capsule: [2*k, 6*k], axis: F.z"),
         ("cylinder", Kind::Cylinder, "cylinder: [2*k, 6*k], axis: F.z"),
+        ("cone", Kind::Cone, "cone: [2*k, 5*k], axis: F.z"),
         ("box", Kind::Box, "box: [4*k, 6*k, 8*k]"),
         ("disc", Kind::Disc, "disc: 4*k, axis: F.z"),
         ("torus", Kind::Torus, "torus: [4*k, k], axis: F.z"),
@@ -776,7 +789,12 @@ fn lost_directions_are_errors() {
         }
     }
     // the edge between side and cap of a cylinder, the corner of a box, the end of a capsule: no direction is lost
-    for solid in ["cylinder: [k, 2*k], axis: F.z", "box: [2*k, 2*k, 2*k]", "capsule: [k, 2*k], axis: F.z"] {
+    for solid in [
+        "cylinder: [k, 2*k], axis: F.z",
+        "box: [2*k, 2*k, 2*k]",
+        "capsule: [k, 2*k], axis: F.z",
+        "cone: [k, 2*k], axis: F.z",
+    ] {
         let m = model(&format!("S {{ of: A, sphere: k }}, T {{ of: B, {solid} }}"), "S on T");
         let mut state = State::of(&m);
         state.coordinates.iter_mut().for_each(|q| *q = 0.0);

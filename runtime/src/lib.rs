@@ -65,10 +65,13 @@ mod error;
 pub mod generated;
 mod hodograph;
 mod impact;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 mod law;
 mod mechanism;
 #[cfg(feature = "std")]
 pub mod methods;
+mod number;
 mod phases;
 mod phi_bar;
 mod reduced;
@@ -100,6 +103,7 @@ pub use crate::{
         ContactOutcome, ContactState, Contacts, Distance, Mechanism, ParameterError, RelativeRotation, State,
         StateError,
     },
+    number::Number,
     phases::{Motion, Phases, Snapshot},
     phi_bar::{invariant_directions, phi_bar},
     reduced::ReducedMatrix,

@@ -122,7 +122,12 @@ impl<T: RealField + Copy> Real for T {
 /// A function of doubles or singles that does not depend on the system, or that of other numbers: which, is
 /// known while compiling.
 #[inline(always)]
-fn same_everywhere<T: Scalar>(a: T, double: fn(f64) -> f64, single: fn(f32) -> f32, other: fn(T) -> T) -> T {
+pub(crate) fn same_everywhere<T: Scalar>(
+    a: T,
+    double: fn(f64) -> f64,
+    single: fn(f32) -> f32,
+    other: fn(T) -> T,
+) -> T {
     let this = TypeId::of::<T>();
     if this == TypeId::of::<f64>() {
         convert(double(convert_unchecked::<T, f64>(a)))

@@ -6,12 +6,14 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::{Hold, JAM, SLACK, margins};
+use crate::event_location::{Slopes, Values};
+use crate::force_functions::ForceFunctions;
+use crate::forces::SLACK;
 use crate::motion::{DIRECTION, Evaluation, Failure};
-use crate::phase::{Closed, Leaving, Phase, mus};
-use crate::smooth_parts::Guard;
+use crate::phase::{Closed, Leaving, Phase};
 use crate::stepper::{Step, Within};
 use crate::transition::Transition;
+use crate::watched::Watched;
 use crate::{ErrorKind, SimulationError};
 
 /// A contact that lifts off counts as open if its gap is above this part of the length of the problem.
@@ -30,6 +32,9 @@ const FAINT: f64 = 1e-6;
 /// The normal acceleration of a separating contact may be negative by this part of its terms: it is zero up
 /// to rounding.
 const STILL: f64 = 2e-11;
+
+/// The relative rounding error of forces, and of what follows from them: far below the slack of their conditions.
+const ELIMINATED: f64 = 64.0 * f64::EPSILON;
 
 /// At coordinates beyond this many lengths of the problem the rounding error of a gap is estimated from its
 /// sensitivity, with this relative change of each coordinate.
@@ -54,43 +59,6 @@ const GAUSS: [(f64, f64); 5] = [
     (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
     (0.953_089_922_969_332, 0.118_463_442_528_094_54),
 ];
-
-/// A monitored function of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Watched {
-    /// the gap of a contact
-    Gap(usize),
-    /// the distance of a near contact from the boundary of its face
-    Entry(usize),
-    /// the distance of a closed contact (index among them) from the boundary of its face
-    End(usize),
-    /// normal force of a contact (index among the closed ones)
-    Normal(usize),
-    /// whether friction suffices
-    Cone(usize),
-    /// slip of a contact along its settled direction, minus the slip at which a step ends
-    Slip(usize),
-    /// the least f of the sliding contacts
-    Jam,
-    /// a user's function, times this sign
-    User(usize, f64),
-}
-
-impl Watched {
-    /// The function that ends a smooth part; slip that ends does so in a part of its own.
-    pub fn guard(self, closed: &[Closed]) -> Option<Guard> {
-        Some(match self {
-            Self::Gap(contact) => Guard::Gap(contact),
-            Self::Entry(contact) => Guard::Face(contact),
-            Self::End(place) => Guard::Face(closed[place].contact),
-            Self::Normal(place) => Guard::NormalForce(closed[place].contact),
-            Self::Cone(place) => Guard::Friction(closed[place].contact),
-            Self::Jam => Guard::Jam,
-            Self::User(index, _) => Guard::Function(index),
-            Self::Slip(_) => return None,
-        })
-    }
-}
 
 /// A gap has another rate than the normal velocity if, over a time below this part of that of the problem, it changes by
 /// this part otherwise, and by this many times its rounding.
@@ -122,8 +90,9 @@ impl Transition<'_> {
                 noise.push(self.rounding_of_gap(contact));
             }
         }
-        // Forces follow the direction of slip, which slow slip has with a rounding error.
-        let turned = self.rounding_of_directions(closed);
+        // Forces have the rounding of their elimination, and follow the direction of slip, which slow slip has with a
+        // rounding error.
+        let turned = self.rounding_of_directions(closed).max(ELIMINATED);
         let force = self.front.forces.iter().map(Vector3::norm).fold(0.0, f64::max);
         for (place, contact) in closed.iter().enumerate() {
             if self.ends(contact.contact) {
@@ -256,7 +225,7 @@ impl Transition<'_> {
         after: f64,
         here: Option<&Evaluation>,
         at: &mut dyn FnMut(f64) -> Within,
-    ) -> Result<Vec<f64>, Failure> {
+    ) -> Result<Values, Failure> {
         let y = at(after);
         let motion = self.motion(closed);
         let t = self.front.t + after;
@@ -264,21 +233,13 @@ impl Transition<'_> {
         let inputs = motion.inputs(t, &y)?;
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
         let distances = self.distances(closed, watched, &state)?;
-        let mut conditions = Vec::new();
-        let mut slips = Vec::new();
-        let mut f = 1.0;
-        if !closed.is_empty() {
+        let mut of_forces = None;
+        if watched.iter().any(|what| what.is_of_forces()) {
             // Directions that follow from the state change the forces.
             let known = here.filter(|_| after == 0.0 && closed.iter().all(Closed::has_own_direction));
             let guess = here.and_then(|here| here.forces.as_ref());
             let evaluated = if known.is_none() { Some(motion.evaluate_near(t, &y, guess)?) } else { None };
-            if let Some(evaluation) = known.or(evaluated.as_ref())
-                && let Some(forces) = &evaluation.forces
-            {
-                conditions = margins(forces, &evaluation.holds, &mus(closed));
-                f = forces.f;
-                slips = slips_left(closed, evaluation);
-            }
+            of_forces = known.or(evaluated.as_ref()).and_then(|there| ForceFunctions::of(closed, there));
         }
         let mut value = |what: &Watched| match *what {
             Watched::Gap(contact) => {
@@ -298,10 +259,9 @@ impl Transition<'_> {
             }
             Watched::Entry(contact) => Ok(self.low() - self.validity_in(contact, &distances)),
             Watched::End(place) => Ok(self.validity_in(closed[place].contact, &distances)),
-            Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
-            Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
-            Watched::Slip(place) => Ok(slips.get(place).copied().unwrap_or(1.0)),
-            Watched::Jam => Ok(f - JAM),
+            Watched::Normal(_) | Watched::Cone(_) | Watched::Slip(_) | Watched::Jam => {
+                Ok(of_forces.as_ref().and_then(|functions| functions.value(what)).unwrap_or(1.0))
+            }
             Watched::User(index, sign) => match (self.options.events[index])(t, q, u) {
                 // One that is not comes to no zero, and steps would be shortened for ever.
                 value if !value.is_finite() => Err(Failure::Input(format!(
@@ -310,7 +270,7 @@ impl Transition<'_> {
                 value => Ok(sign * value),
             },
         };
-        let mut values = Vec::with_capacity(watched.len());
+        let mut values = Values::with_capacity(watched.len());
         for what in watched {
             values.push(value(what)?);
         }
@@ -319,11 +279,11 @@ impl Transition<'_> {
 
     /// The rates of the monitored functions at a time after the front, where they are known: those of gaps
     /// that are monitored by their values.
-    pub(crate) fn slopes(&self, watched: &[Watched], after: f64, y: &[f64]) -> Vec<Option<f64>> {
+    pub(crate) fn slopes(&self, watched: &[Watched], after: f64, y: &[f64]) -> Slopes {
         let motion = self.motion(&[]);
         let t = self.front.t + after;
         let (q, u) = motion.split(y);
-        let Ok(inputs) = motion.inputs(t, y) else { return vec![None; watched.len()] };
+        let Ok(inputs) = motion.inputs(t, y) else { return Slopes::from_elem(None, watched.len()) };
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
         let known = |what: &Watched| match *what {
             Watched::Gap(contact) => {
@@ -333,14 +293,14 @@ impl Transition<'_> {
         };
         let apart: Contacts = watched.iter().filter_map(known).collect();
         if apart.is_empty() {
-            return vec![None; watched.len()];
+            return Slopes::from_elem(None, watched.len());
         }
         let mut distances = Distances::from_elem(Distance::default(), apart.len());
         let mut velocities = SmallVec::<[Vector3<f64>; FEW]>::from_elem(Vector3::zeros(), apart.len());
         if self.mechanism.gaps(&apart, &state, &mut distances).is_err()
             || self.mechanism.contact_velocities(&apart, &state, &mut velocities).is_err()
         {
-            return vec![None; watched.len()];
+            return Slopes::from_elem(None, watched.len());
         }
         let mut found = apart.iter().zip(distances.iter().zip(&velocities));
         let rate = |what: &Watched| {
@@ -460,7 +420,9 @@ impl Transition<'_> {
             if off > rounding && !self.valid_at_end(step, contact)? {
                 continue;
             }
-            if off > MANY * rounding && off > OTHER * h * mean.abs() && h < MOMENT * self.front.scales.time {
+            let is_short = h < MOMENT * self.front.scales.time;
+            // A vertex may have another face at the end, behind the edge between: shorter steps end between the two.
+            if off > MANY * rounding && off > OTHER * h * mean.abs() && is_short && !self.ends(contact) {
                 let rate = (gap - before) / h;
                 return Err(self.error(Some(contact), ErrorKind::GapRate { rate, velocity: mean }));
             }
@@ -561,17 +523,4 @@ impl Transition<'_> {
         }
         Ok(())
     }
-}
-
-/// The slip of settled contacts along their directions, minus the slip at which a step ends, m/s; 1 for
-/// others.
-fn slips_left(closed: &[Closed], there: &Evaluation) -> Vec<f64> {
-    closed
-        .iter()
-        .enumerate()
-        .map(|(place, contact)| match (&contact.turning, &there.holds[place]) {
-            (Some(turning), Hold::Slide(d)) => there.support.slip(place).dot(d) - turning.least,
-            _ => 1.0,
-        })
-        .collect()
 }

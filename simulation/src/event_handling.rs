@@ -2,7 +2,6 @@
 
 use nalgebra::{DVector, Vector2};
 
-use crate::event_functions::Watched;
 use crate::event_location::Crossing;
 use crate::forces::Hold;
 use crate::mode_changes::{Ending, FIRST};
@@ -13,6 +12,7 @@ use crate::phase::{Closed, Leaving, Phase};
 use crate::slip_end::{ENDING, has_passed, may_end, straight, time_of_slip};
 use crate::stepper::Step;
 use crate::transition::Transition;
+use crate::watched::Watched;
 use crate::{EventKind, SimulationError};
 
 /// The step after an event is at most this many times as long as the part of the step before it.

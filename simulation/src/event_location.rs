@@ -6,11 +6,19 @@
 //! this excludes a zero are skipped, on intervals in which p' cannot vanish the ends are compared, and all
 //! others are halved. So no extremum is missed.
 //!
+//! Functions of forces are looked at first where the integration has evaluated the forces anyway, at eight of its
+//! stages: most are far from zero there, and need no point of their own.
+//!
 //! A function that oscillates between the points may look smooth at them. So a step is examined in pieces, in
 //! each of which angles change by a few radians at most, and the slope of the polynomial is compared with
 //! that of the function, which is known for gaps (docs/theory.md, section 17.12).
 
 use std::sync::LazyLock;
+
+use nalgebra::{SMatrix, SVector};
+use smallvec::SmallVec;
+
+use crate::stepper::PLACES;
 
 /// The degrees that are tried; each is twice the previous one, so that points are reused. The first is
 /// skipped if the function rotates faster than its points resolve.
@@ -31,16 +39,34 @@ const HALVED: usize = 3;
 const SLOPES_AT: [f64; 2] = [-0.371, 0.653];
 const SLOPES_DIFFER: f64 = 1e-3;
 
+/// A function is not smooth in a piece of a step that has been bisected so many times, if the last coefficients
+/// of the polynomial through nine points exceed this part of its size.
+const SHORT: usize = 6;
+const JUMPS: f64 = 1e-2;
+/// The greatest difference of a function from its polynomial at a zero, relative to the size of the polynomial.
+const ELSEWHERE: f64 = 1e-6;
+
+/// Values of a lower order exclude a zero where the polynomial through them stays within this part of its mean.
+const NEAR: f64 = 0.9;
+
+/// The values of so many functions, and so many points, need no memory from the heap.
+pub(crate) type Values = SmallVec<[f64; 12]>;
+/// The rates of functions where they are known; the list is as long as that of the functions.
+pub(crate) type Slopes = SmallVec<[Option<f64>; 12]>;
+type AtPoints<T> = SmallVec<[T; 9]>;
+
 /// Functions whose first zero crossing is sought.
 pub(crate) struct Functions<'f> {
     /// number of functions
     pub count: usize,
     /// bounds of their rounding errors
     pub noise: &'f [f64],
-    /// all of them at a fraction of the step; `None` if they cannot be evaluated there
-    pub values: &'f mut dyn FnMut(f64) -> Option<Vec<f64>>,
+    /// one of them at the [`PLACES`] of the step, by states of a lower order; `None` where it is not known
+    pub near: &'f dyn Fn(usize) -> Option<[f64; 8]>,
+    /// these of them at a fraction of the step; `None` if they cannot be evaluated there
+    pub values: &'f mut dyn FnMut(f64, &[usize]) -> Option<Values>,
     /// their rates with respect to the fraction, where they are known
-    pub slopes: &'f mut dyn FnMut(f64) -> Vec<Option<f64>>,
+    pub slopes: &'f mut dyn FnMut(f64) -> Slopes,
 }
 
 /// The functions have no values somewhere in the step, or the step is too long for them: a shorter one must
@@ -72,7 +98,7 @@ fn cosine(m: usize, n: usize) -> f64 {
 
 /// A polynomial by its Chebyshev coefficients on [-1, 1].
 struct Chebyshev {
-    coefficients: Vec<f64>,
+    coefficients: AtPoints<f64>,
     /// Bound of the second derivative.
     bend: f64,
     /// Bound of the difference from the function.
@@ -84,7 +110,7 @@ impl Chebyshev {
     fn through(values: &[f64]) -> Self {
         let n = values.len() - 1;
         let nf = n as f64;
-        let mut coefficients = vec![0.0; n + 1];
+        let mut coefficients = AtPoints::from_elem(0.0, n + 1);
         for (j, coefficient) in coefficients.iter_mut().enumerate() {
             let mut sum = 0.0;
             for (k, value) in values.iter().enumerate() {
@@ -169,6 +195,29 @@ impl Chebyshev {
     }
 }
 
+/// The inverse of the values of Chebyshev's polynomials at the [`PLACES`] of a step: it turns values there into
+/// coefficients.
+static BY_PLACES: LazyLock<SMatrix<f64, 8, 8>> = LazyLock::new(|| {
+    let mut values = SMatrix::<f64, 8, 8>::zeros();
+    for (row, place) in PLACES.iter().enumerate() {
+        let x = 2.0 * place - 1.0;
+        let (mut before, mut here) = (x, 1.0);
+        for column in 0..8 {
+            values[(row, column)] = here;
+            (before, here) = (here, 2.0 * x * here - before);
+        }
+    }
+    values.try_inverse().unwrap_or_else(SMatrix::zeros)
+});
+
+/// Whether a function is far from zero in the whole step by its values at the [`PLACES`].
+fn stays_away(values: &[f64; 8]) -> bool {
+    let coefficients = *BY_PLACES * SVector::from(*values);
+    let last = coefficients.iter().rev().take(3).map(|c| c.abs()).fold(0.0, f64::max);
+    let rest: f64 = coefficients.iter().skip(1).map(|c| c.abs()).sum();
+    rest + 8.0 * 2.0 * last < NEAR * coefficients[0]
+}
+
 /// The first crossing of functions over the fractions [0, 1] of a step. `turns` is the rotation in the step
 /// beyond what nine points resolve; it determines the least number of pieces.
 ///
@@ -182,7 +231,13 @@ pub(crate) fn first_crossing(
     if functions.count == 0 {
         return Ok(None);
     }
-    let active: Vec<usize> = (0..functions.count).collect();
+    let mut active: SmallVec<[usize; 12]> = (0..functions.count).collect();
+    if turns <= FEW_TURNS {
+        active.retain(|function| !(functions.near)(*function).is_some_and(|values| stays_away(&values)));
+    }
+    if active.is_empty() {
+        return Ok(None);
+    }
     let pieces = (turns.ceil() as usize).max(1);
     let mut left = MOST + OF_A_PIECE * pieces;
     let degrees = if turns / pieces as f64 <= FEW_TURNS { &DEGREES[..] } else { &DEGREES[1..] };
@@ -204,19 +259,22 @@ fn within(
     high: f64,
     depth: usize,
 ) -> Result<Option<Crossing>, Unresolved> {
-    let mut points: Vec<Option<Vec<f64>>> = Vec::new();
-    let mut unresolved: Vec<usize> = active.to_vec();
+    let mut points: AtPoints<Option<Values>> = AtPoints::new();
+    let mut unresolved = SmallVec::<[usize; 12]>::from_slice(active);
+    let mut jumps = SmallVec::<[usize; 12]>::new();
     let mut found: Option<Crossing> = None;
-    let mut values = |functions: &mut Functions<'_>, place: f64| {
+    let mut values = |functions: &mut Functions<'_>, place: f64, asked: &[usize]| {
         *budget = budget.checked_sub(1)?;
-        (functions.values)(place)
+        let found = (functions.values)(place, asked)?;
+        let mut all = Values::from_elem(f64::NAN, functions.count);
+        asked.iter().zip(found).for_each(|(&function, value)| all[function] = value);
+        Some(all)
     };
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let slopes: Vec<Vec<Option<f64>>> =
-        SLOPES_AT.iter().map(|x| (functions.slopes)(middle + half * x)).collect();
+    let slopes = SLOPES_AT.map(|x| (functions.slopes)(middle + half * x));
     for &degree in degrees {
         // Every second point is known.
-        let mut next = vec![None; degree + 1];
+        let mut next = AtPoints::from_elem(None, degree + 1);
         for (k, slot) in next.iter_mut().enumerate() {
             let known = if points.is_empty() || k % 2 == 1 {
                 None
@@ -231,14 +289,14 @@ fn within(
             } else {
                 low + 0.5 * (high - low) * (1.0 + x)
             };
-            *slot = known.or_else(|| values(functions, place));
+            *slot = known.or_else(|| values(functions, place, &unresolved));
         }
         points = next;
-        let rows: Vec<&Vec<f64>> =
+        let rows: AtPoints<&Values> =
             points.iter().map(Option::as_ref).collect::<Option<_>>().ok_or(Unresolved)?;
-        let mut left = Vec::new();
+        let mut left = SmallVec::new();
         for function in unresolved {
-            let column: Vec<f64> = rows.iter().map(|row| row[function]).collect();
+            let column: AtPoints<f64> = rows.iter().map(|row| row[function]).collect();
             let polynomial = Chebyshev::through(&column);
             let noise = functions.noise.get(function).copied().unwrap_or(0.0);
             let (size, error) = (polynomial.size(), polynomial.error);
@@ -250,6 +308,9 @@ fn within(
                 .iter()
                 .zip(known)
                 .all(|(&x, slope)| slope.is_none_or(|slope| polynomial.has_slope(x, slope * half, noise)));
+            if degree == DEGREES[1] && depth + SHORT <= DEPTH && error > JUMPS * size {
+                jumps.push(function);
+            }
             if !alike && !rounding {
                 left.push(function);
                 continue;
@@ -264,6 +325,12 @@ fn within(
             }
             if let Some(x) = polynomial.first_below(-1.0, 1.0, noise + error, 60) {
                 let place = low + 0.5 * (high - low) * (1.0 + x);
+                // A function with several branches may be on another one there than at all points.
+                let there = values(functions, place, &[function]).ok_or(Unresolved)?[function];
+                if (there - polynomial.at(x).0).abs() > ELSEWHERE * size + noise {
+                    left.push(function);
+                    continue;
+                }
                 if found.is_none_or(|crossing| place < crossing.place) {
                     found = Some(Crossing { function, place });
                 }
@@ -273,10 +340,14 @@ fn within(
         if unresolved.is_empty() {
             return Ok(found);
         }
+        // More points do not help where all that is left jumps, or has a kink.
+        if degree == DEGREES[1] && unresolved.iter().all(|function| jumps.contains(function)) {
+            break;
+        }
     }
     if depth == 0 || high - low < 1e-12 {
         // Not smooth even here: the values at the ends decide.
-        let ends = (values(functions, low), values(functions, high));
+        let ends = (values(functions, low, &unresolved), values(functions, high, &unresolved));
         if let (Some(_), Some(last)) = ends {
             for function in unresolved {
                 let noise = functions.noise.get(function).copied().unwrap_or(0.0);
@@ -304,14 +375,17 @@ fn within(
 
 #[cfg(test)]
 mod tests {
+    use smallvec::smallvec;
+
     use super::*;
 
     fn crossing(noise: f64, values: &mut dyn FnMut(f64) -> Option<f64>) -> Result<Option<f64>, Unresolved> {
         let mut functions = Functions {
             count: 1,
             noise: &[noise],
-            values: &mut |x| values(x).map(|value| vec![value]),
-            slopes: &mut |_| vec![None],
+            near: &|_| None,
+            values: &mut |x, _| values(x).map(|value| smallvec![value]),
+            slopes: &mut |_| smallvec![None],
         };
         Ok(first_crossing(&mut functions, 1.0)?.map(|crossing| crossing.place))
     }
@@ -331,8 +405,9 @@ mod tests {
             let mut functions = Functions {
                 count: 1,
                 noise: &[0.0],
-                values: &mut |x| Some(vec![gap(x)]),
-                slopes: &mut |x| vec![Some(rate(x))],
+                near: &|_| None,
+                values: &mut |x, _| Some(smallvec![gap(x)]),
+                slopes: &mut |x| smallvec![Some(rate(x))],
             };
             let found = first_crossing(&mut functions, 1.0).unwrap();
             let mut x = 0.0;
@@ -343,6 +418,37 @@ mod tests {
             missed += usize::from((place - x).abs() > 2e-3 / omega);
         }
         assert_eq!(missed, 0);
+    }
+
+    /// The gap of a vertex that passes beside a face is its height where the bodies overlap, and where it is within the
+    /// face, but not in between: all points lie on a line whose zero is none. It is found where bodies overlap.
+    #[test]
+    fn zeros_of_another_branch_are_none() {
+        let gap = |x: f64| if (0.02..0.0308).contains(&x) { 0.003 } else { 0.0301 - x };
+        let place = first(gap).unwrap();
+        assert!((place - 0.0308).abs() < 1e-6, "{place}");
+    }
+
+    /// What the values at the places of a step exclude has no zero in it: of functions of a turn in all, as far down as
+    /// they go, none that falls below a thirtieth of its mean is excluded, and most that stay above half of it are.
+    #[test]
+    fn places_exclude_no_zero() {
+        let (mut excluded, mut far) = (0, 0);
+        for k in 0..4000 {
+            let part = f64::from(k) / 4000.0;
+            let (turn, phase) = (2.0 * (17.0 * part).fract(), 6.3 * (61.0 * part).fract());
+            let (depth, tilt) = (2.0 * (101.0 * part).fract(), (211.0 * part).fract() - 0.5);
+            let f = |x: f64| 1.0 + depth * (turn * x + phase).cos() + tilt * (x - 0.5);
+            let least = (0..=1000).map(|i| f(f64::from(i) / 1000.0)).fold(f64::INFINITY, f64::min);
+            let mean = 0.5 * (f(0.0) + f(1.0));
+            let away = stays_away(&PLACES.map(f));
+            assert!(!away || least > mean / 30.0, "{k}: {least}");
+            if least > 0.5 * mean.abs() {
+                far += 1;
+                excluded += u32::from(away);
+            }
+        }
+        assert!(far > 500 && 10 * excluded > 9 * far, "{excluded} of {far}");
     }
 
     #[test]

@@ -2,17 +2,19 @@
 //! motion is integrated again up to each trial time.
 
 use crate::SimulationError;
-use crate::event_functions::Watched;
 use crate::event_location::Crossing;
 use crate::phase::{Closed, Leaving, Phase};
 use crate::stepper::Step;
 use crate::transition::Transition;
+use crate::watched::Watched;
 
 /// Largest number of trials for a time. Secants need three to five; at kinks of an input intervals are
 /// bisected.
 const TRIALS: usize = 80;
 /// Relative deviation of the slip at the end of a step with a settled direction from the requested one.
 const NEARLY: f64 = 0.2;
+/// Within this part of a step the slope of the last secant gives the time of a zero up to rounding.
+const CLOSE: f64 = 1e-12;
 /// After this many trials intervals are bisected.
 const SECANTS: usize = 8;
 
@@ -63,7 +65,7 @@ impl Transition<'_> {
             };
             let change = if rate < 0.0 { -gap / rate } else { 0.0 };
             let next = (after + change).clamp(0.0, whole.h);
-            if settled(next, after) || (next - after).abs() > 0.1 * whole.h {
+            if settled(next, after) || (next - after).abs() > 0.1 * whole.h || step.ends_later(next - after) {
                 break;
             }
             after = next;
@@ -126,7 +128,11 @@ impl Transition<'_> {
                 }
             };
             let next = next.clamp(0.0, whole.h);
-            if value.abs() <= enough || settled(next, after) || (next - after).abs() > 0.1 * whole.h {
+            if value.abs() <= enough
+                || settled(next, after)
+                || (next - after).abs() > 0.1 * whole.h
+                || ((next - after).abs() < CLOSE * whole.h && slope < 0.0 && last.ends_later(next - after))
+            {
                 break;
             }
             after = next;

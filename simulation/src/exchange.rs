@@ -9,7 +9,7 @@
 use hodograph::State;
 
 use crate::event_functions::LIFTED;
-use crate::forces::{JAM, margins};
+use crate::forces::{JAM, Margins, margins};
 #[cfg(feature = "serde")]
 use crate::front::Front;
 use crate::motion::{Evaluation, Failure, Motion, WORKS};
@@ -328,7 +328,7 @@ impl Transition<'_> {
         let all = self.frozen_functions();
         let place = |index: usize| closed.iter().position(|closed| closed.contact == index);
         let found = if closed.is_empty() { None } else { Some(self.frozen(state)) };
-        let (mut conditions, mut jam) = (Vec::new(), 1.0);
+        let (mut conditions, mut jam) = (Margins::new(), 1.0);
         let mut here = None;
         match found {
             Some(Ok(evaluation)) => {

@@ -144,6 +144,9 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
     })
 }
 
+/// Those of so many contacts need no memory from the heap.
+pub(crate) type Margins = SmallVec<[[f64; 2]; FEW]>;
+
 /// Relative slack of the conditions that end a mode, so that rounding at the boundary does not end it.
 pub(crate) const SLACK: f64 = 2e-12;
 
@@ -151,7 +154,7 @@ pub(crate) const SLACK: f64 = 2e-12;
 /// (mu lambda_n)^2 - lambda_tan^2 (else 1). Without friction there is no force to compare: a contact that
 /// does not slip must not begin to, so its acceleration along the plane takes the place of the force
 /// (theory 17.11).
-pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 2]> {
+pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Margins {
     // The forces of contacts that are not pressed are rounding errors.
     let slack = (SLACK * forces.lambda.amax()).max(forces.rounding);
     holds

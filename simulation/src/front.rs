@@ -64,6 +64,8 @@ pub(crate) struct Front {
     pub events: (usize, f64),
     /// the contact whose point is undefined, if the motion has ended there
     pub ended: Option<usize>,
+    /// number of steps in a row before which slip would have ended at once at its rate, and did not
+    pub would_end: usize,
     /// number of steps since the last event, the time of that event, and the greatest step so far, s
     pub steps: (usize, f64, f64),
 }
@@ -97,6 +99,7 @@ impl Front {
             crowd: 0,
             events: (0, state.time),
             ended: None,
+            would_end: 0,
             steps: (0, state.time, 0.0),
         }
     }

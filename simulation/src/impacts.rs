@@ -11,6 +11,7 @@ use crate::event_functions::{OWN, SIZE};
 use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
+use crate::random::{next_random, up_to};
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
 use crate::{CollisionRecord, ErrorKind, EventKind, ImpactsAtOnce, SimulationError, SimultaneousCollision};
@@ -273,6 +274,10 @@ impl Transition<'_> {
                     fastest.map(|(contact, _)| *contact).into_iter().collect()
                 }
                 (None, ImpactsAtOnce::Simultaneous) => self.involved(touching, &approaching, &speeds)?,
+                (None, ImpactsAtOnce::Sampled(seed)) => {
+                    let contacts = approaching.iter().map(|(contact, _)| *contact).collect();
+                    drawn(contacts, self.key(seed, hits.len(), &speeds))
+                }
                 _ => approaching.iter().map(|(contact, _)| *contact).collect(),
             };
             if next.is_empty() {
@@ -308,6 +313,16 @@ impl Transition<'_> {
             hits.push(hit);
         }
         Err(self.error(None, self.without_end(MOST)))
+    }
+
+    /// What the draw of a group of contacts depends on: the seed, the state, and the number of impacts before it at
+    /// this time. So the same motion makes the same draws, wherever it is continued from.
+    fn key(&self, seed: u64, before: usize, speeds: &[f64]) -> u64 {
+        let words = [before as u64, self.front.t.to_bits()].into_iter();
+        words.chain(speeds.iter().map(|speed| speed.to_bits())).fold(seed, |mut key, word| {
+            key ^= word;
+            next_random(&mut key)
+        })
     }
 
     /// The dependence of the outcome on the order in which contacts struck at the same time are struck
@@ -347,6 +362,21 @@ impl Transition<'_> {
         }
         Ok(Some(spread))
     }
+}
+
+/// A random part of these contacts: first its size is drawn, then its members.
+fn drawn(mut contacts: Vec<usize>, mut key: u64) -> Vec<usize> {
+    if contacts.len() < 2 {
+        return contacts;
+    }
+    let size = 1 + up_to(contacts.len() - 1, &mut key);
+    for place in 0..size {
+        let other = place + up_to(contacts.len() - 1 - place, &mut key);
+        contacts.swap(place, other);
+    }
+    contacts.truncate(size);
+    contacts.sort_unstable();
+    contacts
 }
 
 /// All permutations of a list.

@@ -47,6 +47,7 @@ mod event_location;
 mod event_time;
 mod exchange;
 mod exchange_events;
+mod force_functions;
 mod forces;
 mod front;
 mod given_law;
@@ -60,10 +61,12 @@ mod mode_changes;
 mod mode_selection;
 mod motion;
 mod options;
+mod outcome_set;
 mod pair;
 mod past_jam;
 mod phase;
 mod poisson_at_once;
+pub mod random;
 mod rattling;
 mod scales;
 mod scheduled_events;
@@ -77,12 +80,14 @@ mod singular;
 mod slip_direction;
 mod slip_end;
 mod smooth_parts;
+mod stage_values;
 mod start;
 pub mod stepper;
 mod time_step;
 mod torque_modes;
 mod torques;
 mod transition;
+mod watched;
 
 #[cfg(feature = "serde")]
 pub use crate::exchange::Saved;
@@ -97,6 +102,7 @@ pub use crate::{
     given_law::GivenLaw,
     many::{Batch, Case, Outcome, StopAt, Watch, digest, simulate_many},
     options::{EventFunction, ImpactsAtOnce, Options},
+    outcome_set::{End, OutcomeSet, Range},
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},
     smooth_parts::{ClosedPart, Guard, SmoothPart},

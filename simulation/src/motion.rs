@@ -74,6 +74,13 @@ pub(crate) struct Room {
     last: Option<DVector<f64>>,
 }
 
+impl Room {
+    /// The closed contacts in the last state, and their modes.
+    pub fn contacts(&self) -> (&ClosedContacts, &[Hold]) {
+        (&self.support, &self.holds)
+    }
+}
+
 /// The direction of slip that began along `began`: its own direction if slip is larger than the rounding
 /// error of its terms. `now` is their size, `ever` that with the greatest speeds so far: a rounding error
 /// that projections leave of slip that begins from zero may be opposite to its direction, even if nothing
@@ -208,9 +215,15 @@ impl<'a> Motion<'a> {
         self.evaluated(t, y, None, Wanted::Any)
     }
 
-    /// Writes only the rates to `rates`; `room` is the work space of this motion.
-    pub fn rates(&self, t: f64, y: &[f64], rates: &mut [f64], room: &mut Room) -> Result<(), Failure> {
-        self.write_rates(t, y, (None, Wanted::Motion), rates, room).map(|_| ())
+    /// Writes the rates to `rates`, and returns any forces with this motion; `room` is the work space of this motion.
+    pub fn rates(
+        &self,
+        t: f64,
+        y: &[f64],
+        rates: &mut [f64],
+        room: &mut Room,
+    ) -> Result<Option<Forces>, Failure> {
+        self.write_rates(t, y, (None, Wanted::Motion), rates, room)
     }
 
     fn evaluated(

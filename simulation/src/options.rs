@@ -26,8 +26,30 @@ pub enum ImpactsAtOnce {
     /// All closed contacts at once, after Liu, Zhao and Brogliato, with the ratios of [`Options::stiffness`];
     /// without friction only.
     Lzb,
+    /// Of the contacts that approach a random number, drawn by this seed, is struck at once as by
+    /// [`ImpactsAtOnce::Approaching`]; then it is drawn among those that approach after it, until none does. So one
+    /// motion is drawn of those that all orders and all ties give ([`crate::OutcomeSet`]).
+    Sampled(u64),
     /// The simulation ends with an error.
     Stop,
+}
+
+impl ImpactsAtOnce {
+    /// The names of all of them, as [`ImpactsAtOnce::named`] reads them.
+    pub const NAMES: [&str; 6] = ["approaching", "sequential", "simultaneous", "lzb", "sampled", "stop"];
+
+    /// The treatment of this name; `seed` is that of `sampled`.
+    pub fn named(name: &str, seed: u64) -> Option<Self> {
+        Some(match name {
+            "approaching" => Self::Approaching,
+            "sequential" => Self::Sequential,
+            "simultaneous" => Self::Simultaneous,
+            "lzb" => Self::Lzb,
+            "sampled" => Self::Sampled(seed),
+            "stop" => Self::Stop,
+            _ => return None,
+        })
+    }
 }
 
 /// Options of a simulation. Start from `Options::default()`.
@@ -103,5 +125,19 @@ impl fmt::Debug for Options {
             .field("stiffness", &self.stiffness)
             .field("events", &self.events.len())
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_that_of_a_treatment() {
+        for name in ImpactsAtOnce::NAMES {
+            let treatment = ImpactsAtOnce::named(name, 3);
+            assert_eq!(treatment.map(|of| format!("{of:?}").to_lowercase().starts_with(name)), Some(true));
+        }
+        assert_eq!(ImpactsAtOnce::named("Stop", 0), None);
     }
 }

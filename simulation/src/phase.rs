@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, Vector2};
+use smallvec::SmallVec;
 
 /// The state of an open contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,6 +144,6 @@ pub(crate) struct Modes {
 }
 
 /// The coefficients of friction.
-pub(crate) fn mus(closed: &[Closed]) -> Vec<f64> {
+pub(crate) fn mus(closed: &[Closed]) -> SmallVec<[f64; 8]> {
     closed.iter().map(|contact| contact.mu).collect()
 }

@@ -24,8 +24,28 @@ const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const GREATEST_FACTOR: f64 = 10.0;
 
-/// The rates y' = f(t, y) of a system; NaN where it has none.
-pub type Rates<'r> = dyn FnMut(f64, &[f64], &mut [f64]) + 'r;
+/// A system y' = f(t, y).
+pub trait System {
+    /// Writes the rates; NaN where it has none.
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]);
+
+    /// The state whose rates were asked for last is that of a step at a place of [`PLACES`], to a lower order than
+    /// the step itself.
+    fn at_place(&mut self, _place: usize) {}
+}
+
+impl<F: FnMut(f64, &[f64], &mut [f64])> System for F {
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) {
+        self(t, y, rates);
+    }
+}
+
+/// Stages at places that spread over a step, of the highest orders; the first is its start and the last its end.
+const PLACES_OF: [usize; 8] = [0, 13, 14, 7, 9, 15, 10, 12];
+
+/// The fractions of a step at which [`System::at_place`] tells of a state.
+pub static PLACES: LazyLock<[f64; 8]> =
+    LazyLock::new(|| PLACES_OF.map(|stage| if stage == STAGES { 1.0 } else { METHOD.c[stage] }));
 
 /// An accepted step from `t` over `h`.
 #[derive(Clone)]
@@ -85,6 +105,36 @@ impl Step {
         state
     }
 
+    /// Moves the end of the step by a time so short that the rates at the end determine the state there up to
+    /// rounding. Returns whether it is that short; else nothing changes.
+    pub fn ends_later(&mut self, by: f64) -> bool {
+        let n = self.start.len();
+        if self.dense.is_empty() || self.h + by <= 0.0 {
+            return false;
+        }
+        let (_, rest) = self.dense.split_at(n);
+        let (change, rest) = rest.split_at(n);
+        let (bend, rest) = rest.split_at(n);
+        // The rate at the end times h, as the dense output has it.
+        let last = |i: usize| change[i] - bend[i] - rest[i];
+        let part = by / self.h;
+        let known = |i: usize| {
+            let (first, last) = (self.h * self.first[i], last(i));
+            let size = self.end[i].abs() + first.abs() + last.abs();
+            part * part * (last - first).abs() <= 4.0 * f64::EPSILON * size
+        };
+        if !(0..n).all(known) {
+            return false;
+        }
+        let moved: Vec<f64> = (0..n).map(|i| part * last(i)).collect();
+        for (i, moved) in moved.into_iter().enumerate() {
+            self.end[i] += moved;
+            self.dense[n + i] += moved;
+        }
+        self.h += by;
+        true
+    }
+
     /// Replaces the final state by one that is corrected for drift.
     pub fn corrected(&mut self, end: &[f64]) {
         self.end.copy_from_slice(end);
@@ -110,26 +160,26 @@ pub struct Tolerances {
 /// they are known. A step with rates that are not finite is rejected. `None` if the initial rates are not
 /// finite, or the step became too small.
 pub fn step(
-    rates: &mut Rates<'_>,
+    system: &mut (impl System + ?Sized),
     (t, y, first): (f64, &[f64], Option<&[f64]>),
     mut h: f64,
     tolerances: &Tolerances,
 ) -> Option<Step> {
     let (asked, least) = (h, 16.0 * f64::EPSILON * t.abs().max(1e-9 * h));
-    let mut stages = Stages::new(rates, t, y, first);
+    let mut stages = Stages::new(system, t, y, first);
     let mut refused = false;
     for _ in 0..REFUSALS {
         if h < least && h < asked {
             return None;
         }
-        stages.compute(rates, h);
+        stages.compute(system, h);
         let error = stages.error(h, tolerances);
         let mut factor = (SAFETY * error.powf(-1.0 / ORDER as f64)).clamp_from(LEAST_FACTOR, GREATEST_FACTOR);
         if error <= 1.0 {
             if refused {
                 factor = factor.min(1.0);
             }
-            return stages.finish(rates, h, h * factor);
+            return stages.finish(system, h, h * factor);
         }
         refused = true;
         h *= factor;
@@ -138,13 +188,17 @@ pub fn step(
 }
 
 /// A step from (t, y) over exactly `h`, without error control: part of a step that was accepted.
-pub fn part(rates: &mut Rates<'_>, (t, y, first): (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
+pub fn part(
+    system: &mut (impl System + ?Sized),
+    (t, y, first): (f64, &[f64], Option<&[f64]>),
+    h: f64,
+) -> Option<Step> {
     if h <= 0.0 {
         return Some(Step::still(t, 0.0, y));
     }
-    let mut stages = Stages::new(rates, t, y, first);
-    stages.compute(rates, h);
-    stages.finish(rates, h, h * GREATEST_FACTOR)
+    let mut stages = Stages::new(system, t, y, first);
+    stages.compute(system, h);
+    stages.finish(system, h, h * GREATEST_FACTOR)
 }
 
 trait ClampFrom {
@@ -168,12 +222,15 @@ struct Stages<'y> {
 }
 
 impl<'y> Stages<'y> {
-    fn new(rates: &mut Rates<'_>, t: f64, start: &'y [f64], first: Option<&[f64]>) -> Self {
+    fn new(system: &mut (impl System + ?Sized), t: f64, start: &'y [f64], first: Option<&[f64]>) -> Self {
         let n = start.len();
         let mut k = vec![0.0; ALL_STAGES * n];
         match first {
             Some(first) => k[..n].copy_from_slice(first),
-            None => rates(t, start, &mut k[..n]),
+            None => {
+                system.rates(t, start, &mut k[..n]);
+                tell(system, 0);
+            }
         }
         Self { t, start, k, state: vec![0.0; n], end: vec![0.0; n] }
     }
@@ -183,18 +240,19 @@ impl<'y> Stages<'y> {
     }
 
     /// The rates of stage i from the previous ones.
-    fn stage(&mut self, rates: &mut Rates<'_>, i: usize, h: f64) {
+    fn stage(&mut self, system: &mut (impl System + ?Sized), i: usize, h: f64) {
         let n = self.start.len();
         let (before, rest) = self.k.split_at_mut(i * n);
         self.state.copy_from_slice(self.start);
         add(&mut self.state, before, &METHOD.a[i], h);
-        rates(self.t + METHOD.c[i] * h, &self.state, &mut rest[..n]);
+        system.rates(self.t + METHOD.c[i] * h, &self.state, &mut rest[..n]);
+        tell(system, i);
     }
 
     /// All stages of a step, and its final state.
-    fn compute(&mut self, rates: &mut Rates<'_>, h: f64) {
+    fn compute(&mut self, system: &mut (impl System + ?Sized), h: f64) {
         for i in 1..STAGES {
-            self.stage(rates, i, h);
+            self.stage(system, i, h);
         }
         let n = self.start.len();
         self.state.fill(0.0);
@@ -227,15 +285,15 @@ impl<'y> Stages<'y> {
     }
 
     /// The step with its dense output; `None` if its final state is not finite.
-    fn finish(mut self, rates: &mut Rates<'_>, h: f64, next: f64) -> Option<Step> {
+    fn finish(mut self, system: &mut (impl System + ?Sized), h: f64, next: f64) -> Option<Step> {
         if !self.end.iter().all(|value| value.is_finite()) {
             return None;
         }
         let n = self.start.len();
-        rates(self.t + h, &self.end, &mut self.k[STAGES * n..][..n]);
+        self.rates_at_end(system, h);
         let Some(by) = &METHOD.bi else { return None };
         for i in STAGES + 1..ALL_STAGES {
-            self.stage(rates, i, h);
+            self.stage(system, i, h);
         }
         let mut dense = vec![0.0; ORDER * n];
         for i in 0..n {
@@ -250,7 +308,7 @@ impl<'y> Stages<'y> {
         for (place, dense) in dense.chunks_exact_mut(n).enumerate().skip(4) {
             add(dense, &self.k, &by[place], h);
         }
-        self.unrounded(rates, h);
+        self.unrounded(system, h);
         let first = self.k(0).to_vec();
         Some(Step { t: self.t, h, next, end: self.end, start: self.start.to_vec(), first, dense })
     }
@@ -258,7 +316,7 @@ impl<'y> Stages<'y> {
     /// Replaces the result by that of the trapezoidal rule if both agree up to rounding (constant
     /// acceleration), since the rule has fewer roundings and no bias: over 1e4 bounces the rounding of the
     /// twelve weights of the method would be visible in the energy.
-    fn unrounded(&mut self, rates: &mut Rates<'_>, h: f64) {
+    fn unrounded(&mut self, system: &mut (impl System + ?Sized), h: f64) {
         let n = self.start.len();
         // Speeds first, then the coordinates, which depend on them.
         for again in [true, false] {
@@ -275,8 +333,21 @@ impl<'y> Stages<'y> {
             if !(changed && again) {
                 break;
             }
-            rates(self.t + h, &self.end, &mut self.k[STAGES * n..][..n]);
+            self.rates_at_end(system, h);
         }
+    }
+
+    fn rates_at_end(&mut self, system: &mut (impl System + ?Sized), h: f64) {
+        let n = self.start.len();
+        system.rates(self.t + h, &self.end, &mut self.k[STAGES * n..][..n]);
+        tell(system, STAGES);
+    }
+}
+
+/// Tells the system of a stage at a place.
+fn tell(system: &mut (impl System + ?Sized), stage: usize) {
+    if let Some(place) = PLACES_OF.iter().position(|&of| of == stage) {
+        system.at_place(place);
     }
 }
 
@@ -324,6 +395,43 @@ mod tests {
         let mut broken =
             |t: f64, _: &[f64], rates: &mut [f64]| rates.fill(if t > 3.0 { f64::NAN } else { 1.0 });
         assert!(super::step(&mut broken, (3.0, &[1.0], None), 1.0, &tolerances).is_none());
+    }
+
+    /// The end of a step is moved by so short a time that nothing is lost, or not at all.
+    #[test]
+    fn the_end_of_a_step_moves_by_short_times_only() {
+        let mut step = part(&mut oscillator, (0.0, &[1.0, 0.0], None), 0.5).unwrap();
+        assert!(!step.ends_later(1e-6) && step.h == 0.5);
+        for by in [1e-9, -3e-9] {
+            let there = part(&mut oscillator, (0.0, &[1.0, 0.0], None), step.h + by).unwrap();
+            assert!(step.ends_later(by) && step.h == there.h);
+            for (moved, again) in step.end.iter().zip(&there.end) {
+                assert!((moved - again).abs() < 4e-16);
+            }
+            assert!((step.at(0.999_999_999)[0] - there.at(0.999_999_999)[0]).abs() < 1e-15);
+        }
+    }
+
+    /// The places at which a system is told of its states are in order, from the start to the end of the step.
+    #[test]
+    fn places_spread_over_a_step() {
+        assert!(PLACES[0] == 0.0 && PLACES[7] == 1.0);
+        assert!(PLACES.windows(2).all(|pair| pair[0] < pair[1] && pair[1] < pair[0] + 0.3));
+        struct Told(f64, Vec<f64>);
+        impl System for Told {
+            fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) {
+                self.0 = t;
+                oscillator(t, y, rates);
+            }
+            fn at_place(&mut self, place: usize) {
+                assert!((self.0 - 0.1 * PLACES[place]).abs() < 1e-15);
+                self.1.push(PLACES[place]);
+            }
+        }
+        let mut told = Told(0.0, Vec::new());
+        part(&mut told, (0.0, &[1.0, 0.0], None), 0.1).unwrap();
+        told.1.sort_by(f64::total_cmp);
+        assert_eq!(told.1, *PLACES);
     }
 
     /// For constant acceleration the weights of the method cause no error.

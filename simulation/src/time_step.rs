@@ -4,8 +4,8 @@ use std::cell::{Cell, RefCell};
 
 use hodograph::{ComponentKind, ContactError, State};
 use nalgebra::Vector2;
+use smallvec::SmallVec;
 
-use crate::event_functions::Watched;
 use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
 use crate::motion::{Evaluation, Failure};
@@ -13,8 +13,10 @@ use crate::phase::{Closed, Phase, Turned, Turning, mus};
 use crate::settled_slip::settled;
 use crate::signed_slip::{self, EXPLICIT, Search, SettledSlip, inconsistent};
 use crate::slip_end::{ENDING, Fate, fate, has_passed, may_end, straight, time_of_slip};
+use crate::stage_values::Stages;
 use crate::stepper::{self, Step, Tolerances};
 use crate::transition::Transition;
+use crate::watched::Watched;
 use crate::{ErrorKind, SimulationError};
 
 /// The part of the time to the end of slip that a step may take.
@@ -31,6 +33,8 @@ const ADVANCE: f64 = 1e-2;
 const STUCK: usize = 1200;
 const CONTACTS: usize = 4;
 const NOTHING: f64 = 2e-8;
+/// After so many steps in a row slip that would end at once is taken for slip whose direction turns.
+const AGAIN: usize = 2;
 
 /// Number of steps with settled directions that are tried before directions are integrated.
 const TRIALS: usize = 4;
@@ -94,6 +98,8 @@ impl Transition<'_> {
         let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
         let ending = ENDING * self.front.scales.time;
         let mut left = vec![None; closed.len()];
+        // Contacts whose slip would end at once at its present rate, but does not.
+        let mut turns = vec![false; closed.len()];
         for (i, contact) in closed.iter().enumerate() {
             if !contact.rubs() {
                 continue;
@@ -113,6 +119,7 @@ impl Transition<'_> {
                     if !stopped.is_empty() {
                         return self.end_slip(&closed, &here, &stopped, time);
                     }
+                    turns[i] = !passed && left[i].is_some_and(|left| left < ending);
                 } else if let Fate::Ends(time) =
                     fate(&here.support, &here.holds, &mus(&closed), i, LATE * ending)
                 {
@@ -120,7 +127,15 @@ impl Transition<'_> {
                 }
             }
         }
-        let (made, signed) = match self.settled_step(&mut closed, &here, most, &left) {
+        // Where this is so in step after step, while slip of another contact lasts, the direction turns faster than slip
+        // becomes less: it is sought together with those of the others (theory 17.5).
+        let rubbing = closed.iter().filter(|contact| contact.rubs()).count();
+        let turning = turns.iter().filter(|&&turns| turns).count();
+        let sought = turning < rubbing && self.front.would_end >= AGAIN;
+        self.front.would_end = if turning > 0 { self.front.would_end + 1 } else { 0 };
+        let ends: Vec<_> =
+            left.iter().zip(&turns).map(|(&left, &turns)| left.filter(|_| !(turns && sought))).collect();
+        let (made, signed) = match self.settled_step(&mut closed, &here, most, &ends) {
             Some(made) => (made, true),
             None => {
                 let ends = left.iter().flatten().map(|left| SHARE * left.max(ending));
@@ -311,22 +326,16 @@ impl Transition<'_> {
                 let modes = self.modes_in_words();
                 return Err(self.error(None, ErrorKind::NoProgress { steps: 1, time: most, modes }));
             }
-            let failed = RefCell::new(None);
-            let made = {
-                let motion = self.motion(closed);
-                let mut room = motion.room();
-                let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
-                    if let Err(failure) = motion.rates(t, y, rates, &mut room) {
-                        failed.borrow_mut().get_or_insert(failure);
-                        rates.fill(f64::NAN);
-                    }
-                };
-                // Directions that follow from the state change the rates.
-                let first = closed.iter().all(Closed::has_own_direction).then_some(&here.rates[..]);
-                stepper::step(&mut rates, (self.front.t, &self.front.y, first), most, &tolerances)
-            };
+            let motion = self.motion(closed);
+            let mut stages = Stages::new(&motion);
+            // Directions that follow from the state change the rates.
+            let first = closed.iter().all(Closed::has_own_direction).then_some(&here.rates[..]);
+            if first.is_some() {
+                stages.starts(here);
+            }
+            let made = stepper::step(&mut stages, (self.front.t, &self.front.y, first), most, &tolerances);
             let Some(step) = made else {
-                return Ok(Attempt::Stuck(failed.into_inner().or(refused.into_inner())));
+                return Ok(Attempt::Stuck(stages.failed.or(refused.into_inner())));
             };
             let refused_before = refused.take();
             // No time is left before it.
@@ -353,10 +362,13 @@ impl Transition<'_> {
                 &mut Functions {
                     count: watched.len(),
                     noise: &noise,
-                    values: &mut |fraction| {
+                    near: &|function| stages.values(&watched[function]),
+                    values: &mut |fraction, functions| {
                         looks.set(looks.get() + 1);
                         let at = &mut |after: f64| step.at(after / h);
-                        let values = self.values(closed, &watched, h * fraction, Some(here), at);
+                        let asked: SmallVec<[Watched; 12]> =
+                            functions.iter().map(|&one| watched[one]).collect();
+                        let values = self.values(closed, &asked, h * fraction, Some(here), at);
                         if let Err(Failure::Input(message)) = &values {
                             *refused.borrow_mut() = Some(Failure::Input(message.clone()));
                         }

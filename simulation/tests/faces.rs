@@ -11,30 +11,30 @@ use nalgebra::Vector3;
 use crate::ledge::block_on_ledge::BlockOnLedge;
 use crate::many::model;
 
-type V = [f64; 3];
+pub type V = [f64; 3];
 
 /// Half the sides of the two bodies.
 type Halves = [[f64; 3]; 2];
 
 /// The middles of two bodies, and their axes.
-struct Pose {
-    at: [V; 2],
-    axes: [[V; 3]; 2],
+pub struct Pose {
+    pub at: [V; 2],
+    pub axes: [[V; 3]; 2],
 }
 
-fn dot3(a: V, b: V) -> f64 {
+pub fn dot3(a: V, b: V) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-fn norm3(a: V) -> f64 {
+pub fn norm3(a: V) -> f64 {
     dot3(a, a).sqrt()
 }
 
-fn sub3(a: V, b: V) -> V {
+pub fn sub3(a: V, b: V) -> V {
     [0, 1, 2].map(|i| a[i] - b[i])
 }
 
-fn plus(a: V, b: V, s: f64) -> V {
+pub fn plus(a: V, b: V, s: f64) -> V {
     [0, 1, 2].map(|i| a[i] + s * b[i])
 }
 
@@ -43,17 +43,17 @@ fn scaled(a: V, s: f64) -> V {
 }
 
 /// Components along axes.
-fn along(v: V, axes: &[V; 3]) -> V {
+pub fn along(v: V, axes: &[V; 3]) -> V {
     [0, 1, 2].map(|i| dot3(v, axes[i]))
 }
 
-fn back(v: V, axes: &[V; 3]) -> V {
+pub fn back(v: V, axes: &[V; 3]) -> V {
     [0, 1, 2].map(|k| (0..3).map(|i| v[i] * axes[i][k]).sum())
 }
 
 /// Where the nearest points of two bodies are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+pub enum Place {
     /// a vertex of this body in the inside of a face of the other
     Face(usize),
     /// the insides of an edge of each
@@ -64,14 +64,14 @@ enum Place {
 
 /// The nearest points of two bodies that are apart.
 #[derive(Clone, Copy, Debug)]
-struct Nearest {
-    distance: f64,
-    points: [V; 2],
-    place: Place,
+pub struct Nearest {
+    pub distance: f64,
+    pub points: [V; 2],
+    pub place: Place,
 }
 
 /// This far from the end of a face or edge a place is in its inside.
-const INSIDE: f64 = 1e-6;
+pub const INSIDE: f64 = 1e-6;
 
 fn corners(pose: &Pose, halves: &Halves, body: usize) -> Vec<V> {
     let h = halves[body];
@@ -121,22 +121,29 @@ fn nearest(pose: &Pose, halves: &Halves) -> Option<Nearest> {
     }
     for (p, d) in edges(0) {
         for (q, e) in edges(1) {
-            let (dd, ee, de, w) = (dot3(d, d), dot3(e, e), dot3(d, e), sub3(p, q));
-            let det = dd * ee - de * de;
-            if det <= 1e-12 * dd * ee {
-                continue;
-            }
-            let t = (de * dot3(e, w) - ee * dot3(d, w)) / det;
-            let u = (dd * dot3(e, w) - de * dot3(d, w)) / det;
-            let inside = |x: f64, length: f64| x * length > INSIDE && (1.0 - x) * length > INSIDE;
-            if inside(t, dd.sqrt()) && inside(u, ee.sqrt()) {
-                let points = [plus(p, d, t), plus(q, e, u)];
-                let distance = norm3(sub3(points[0], points[1]));
-                look(Nearest { distance, points, place: Place::Edges });
-            }
+            crossing((p, d), (q, e)).into_iter().for_each(&mut look);
         }
     }
     best
+}
+
+/// The nearest places of two edges, from p along d and from q along e, that are inside of both.
+pub fn crossing((p, d): (V, V), (q, e): (V, V)) -> Option<Nearest> {
+    let (dd, ee, de, w) = (dot3(d, d), dot3(e, e), dot3(d, e), sub3(p, q));
+    let det = dd * ee - de * de;
+    if det <= 1e-12 * dd * ee {
+        return None;
+    }
+    let t = (de * dot3(e, w) - ee * dot3(d, w)) / det;
+    let u = (dd * dot3(e, w) - de * dot3(d, w)) / det;
+    let inside = |x: f64, length: f64| x * length > INSIDE && (1.0 - x) * length > INSIDE;
+    let points = [plus(p, d, t), plus(q, e, u)];
+    let distance = norm3(sub3(points[0], points[1]));
+    (inside(t, dd.sqrt()) && inside(u, ee.sqrt())).then_some(Nearest {
+        distance,
+        points,
+        place: Place::Edges,
+    })
 }
 
 /// Whether an edge from p along d passes through a box.
@@ -152,22 +159,23 @@ fn pierces((p, d): (V, V), pose: &Pose, halves: &Halves, body: usize) -> bool {
 }
 
 /// A body before another that stands still.
-struct Bodies<'m> {
-    model: &'m dyn Contacts<f64>,
-    halves: Halves,
+pub struct Bodies<'m> {
+    pub model: &'m dyn Contacts<f64>,
+    /// their nearest points; `None` of bodies that overlap
+    pub nearest: &'m dyn Fn(&Pose) -> Option<Nearest>,
     /// where the other is
-    other: V,
+    pub other: V,
     /// the place and the axes of the one at these coordinates
-    place: fn(&[f64]) -> (V, [V; 3]),
+    pub place: fn(&[f64]) -> (V, [V; 3]),
     /// random coordinates and speeds
-    random: fn(&mut Random) -> (Vec<f64>, Vec<f64>),
+    pub random: fn(&mut Random) -> (Vec<f64>, Vec<f64>),
 }
 
 /// Counts what was seen.
 #[derive(Debug, Default)]
-struct Seen {
-    faces: [usize; 2],
-    edges: usize,
+pub struct Seen {
+    pub faces: [usize; 2],
+    pub edges: usize,
     others: usize,
     /// of these so many with all neighbours, at which rates were compared
     rates: usize,
@@ -178,7 +186,7 @@ const OF_EDGES: f64 = 1e-3;
 const STEP: f64 = 1e-4;
 
 /// Looks at so many random poses at which the bodies are apart.
-fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
+pub fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
     let model = bodies.model;
     let count = model.count(ComponentKind::Contact);
     let points: Vec<usize> = (0..count)
@@ -196,7 +204,7 @@ fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
             at: [at, bodies.other],
             axes: [axes, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]],
         };
-        let Some(nearest) = nearest(&pose, &bodies.halves) else { continue };
+        let Some(nearest) = (bodies.nearest)(&pose) else { continue };
         done += 1;
         let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
         let features = |contact: &usize| model.validity(*contact, &state).unwrap().is_some();
@@ -268,7 +276,7 @@ fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
 fn rectangles_on_rectangles() {
     let bodies = Bodies {
         model: &BlockOnLedge::<f64>::default(),
-        halves: [[0.15, 0.1, 0.0], [1.0, 0.5, 0.0]],
+        nearest: &|pose| nearest(pose, &[[0.15, 0.1, 0.0], [1.0, 0.5, 0.0]]),
         other: [-1.0, -0.5, 0.0],
         place: |q| {
             let (s, c) = q[2].sin_cos();
@@ -292,29 +300,37 @@ fn boxes_on_boxes() {
     let crates = model("crate_on_table");
     let bodies = Bodies {
         model: &crates,
-        halves: [[0.15, 0.1, 0.12], [1.0, 0.1, 1.0]],
+        nearest: &|pose| nearest(pose, &[[0.15, 0.1, 0.12], [1.0, 0.1, 1.0]]),
         other: [-1.0, -0.1, 0.0],
-        place: |q| {
-            let e = [3, 4, 5, 6].map(|i| q[i]);
-            ([q[0], q[1], q[2]], [0, 1, 2].map(|i| turned(e, i)))
-        },
+        place: by_quaternion,
         random: |random| {
-            let mut e: [f64; 4] = std::array::from_fn(|_| random.between(-1.0, 1.0));
-            while dot4(e, e) > 1.0 || dot4(e, e) < 0.01 {
-                e = std::array::from_fn(|_| random.between(-1.0, 1.0));
-            }
-            let size = dot4(e, e).sqrt();
-            let mut q = vec![
+            let at = [
                 -1.0 + random.between(-1.4, 1.4),
                 -0.1 + random.between(-0.5, 0.5),
                 random.between(-1.4, 1.4),
             ];
-            q.extend(e.map(|c| c / size));
-            (q, (0..6).map(|_| random.between(-1.0, 1.0)).collect())
+            in_space(at, random)
         },
     };
     let seen = compare(&bodies, 10_000);
     assert!(seen.faces.iter().all(|&count| count > 200) && seen.edges > 2000, "{seen:?}");
+}
+
+/// The place and the axes of a body that a quaternion turns.
+pub fn by_quaternion(q: &[f64]) -> (V, [V; 3]) {
+    let e = [3, 4, 5, 6].map(|i| q[i]);
+    ([q[0], q[1], q[2]], [0, 1, 2].map(|i| turned(e, i)))
+}
+
+/// Coordinates and speeds of a body at a place, in any orientation.
+pub fn in_space(at: V, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
+    let mut e: [f64; 4] = std::array::from_fn(|_| random.between(-1.0, 1.0));
+    while dot4(e, e) > 1.0 || dot4(e, e) < 0.01 {
+        e = std::array::from_fn(|_| random.between(-1.0, 1.0));
+    }
+    let size = dot4(e, e).sqrt();
+    let q = at.into_iter().chain(e.map(|c| c / size)).collect();
+    (q, (0..6).map(|_| random.between(-1.0, 1.0)).collect())
 }
 
 fn dot4(a: [f64; 4], b: [f64; 4]) -> f64 {

@@ -27,6 +27,7 @@ mod one_contact;
 mod one_pass;
 mod painleve;
 mod poisson;
+mod polytopes;
 mod rotation;
 mod settling;
 mod several;

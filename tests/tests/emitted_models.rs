@@ -2,8 +2,9 @@
 //! satisfy the laws of mechanics.
 
 use crate::common::emitted::{Emitted, Hit, emitted};
-use crate::common::random::samples;
+use crate::common::random::{Random, samples};
 use crate::common::{Model, models, root};
+use hodograph::lanes::Lanes;
 use hodograph::{Law, Surface};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
@@ -72,6 +73,61 @@ fn in_place_the_same_bits() {
             }
         }
     }
+}
+
+/// Values and derivatives of four states at once have the bits that they have one by one, and fail where one of
+/// the four fails. With `HODOGRAPH_STATES` in the environment so many states are taken of each model.
+#[test]
+fn in_lanes_the_same_bits() {
+    let states = std::env::var("HODOGRAPH_STATES").map_or(200, |text| text.parse().expect("a number"));
+    let (mut compared, mut failed) = (0, 0);
+    for (module, model) in &pairs() {
+        let regular: Vec<Inputs> = samples(model, 4).into_iter().map(|sample| sample.inputs).collect();
+        assert!(module.of_lanes().contains(&"accelerations"), "{}", module.name());
+        let mut random = Random::named(module.name());
+        for block in 0..states / 4 {
+            // one block in eight has a state that is no number
+            let at = four(&regular, &mut random, block % 8 == 7);
+            for routine in module.of_lanes() {
+                let singly = at.each_ref().map(|at| module.call(routine, at).expect("a routine"));
+                match module.in_lanes(routine, &at).expect("a routine") {
+                    Ok(together) => {
+                        for (lane, single) in singly.iter().enumerate() {
+                            let single = single
+                                .as_ref()
+                                .unwrap_or_else(|error| panic!("{}::{routine}: {error}", module.name()));
+                            let together = together.iter().map(|numbers| numbers.lane(lane).to_bits());
+                            assert!(
+                                together.eq(single.iter().map(|number| number.to_bits())),
+                                "{}::{routine}, lane {lane} of {at:?}",
+                                module.name()
+                            );
+                            compared += single.len();
+                        }
+                    }
+                    Err(error) => {
+                        assert!(singly.contains(&Err(error)), "{}::{routine}: {singly:?}", module.name());
+                        failed += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!("{compared} numbers compared, {failed} blocks with a state that fails");
+    assert!(compared > 1000 * states && failed > states / 10);
+}
+
+/// Four states near regular ones.
+fn four(regular: &[Inputs], random: &mut Random, spoiled: bool) -> [Inputs; 4] {
+    let mut all: [Inputs; 4] = std::array::from_fn(|lane| regular[lane].clone());
+    for at in &mut all {
+        let lists = [&mut at.coordinates, &mut at.speeds, &mut at.inputs, &mut at.accelerations];
+        lists.into_iter().flatten().for_each(|number| *number += 0.3 * random.number());
+    }
+    if spoiled && let Some(number) = all[2].coordinates.first_mut() {
+        *number = f64::NAN;
+    }
+    all
 }
 
 /// `mass_matrix_lower` has the bits of one triangle of `mass_matrix`; where that has one entry only, there is

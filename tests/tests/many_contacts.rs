@@ -5,7 +5,8 @@ use hodograph::{
 };
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{
-    Drive, Event, EventKind, ImpactsAtOnce, Options, Progress, Simulation, SimulationError,
+    Batch, Case, Drive, Event, EventKind, ImpactsAtOnce, Options, Outcome, OutcomeSet, Progress, Simulation,
+    SimulationError, digest, simulate_many,
 };
 
 fn model(name: &str) -> InterpretedMechanism {
@@ -142,6 +143,48 @@ fn a_ball_in_a_groove_is_followed_to_the_end() {
         assert!(end.error.is_none(), "{k}: {:?}", end.error);
         assert!(end.account.abs() < 1e-10, "{k}: {:e}", end.account);
     }
+}
+
+/// A ball falls onto both walls of a groove at once. Either strikes first, and then perhaps the other, or both strike
+/// together: three outcomes, two of which mirror each other, and the draws find all of them and no other.
+#[test]
+fn draws_find_every_outcome_of_a_tie() {
+    let groove = model("groove_drop");
+    let mut start = Start::of(&groove);
+    start.set(&groove, "y", 0.0);
+    let surface = Surface { mu: 0.0, e: 0.5, law: Law::Newton };
+    let case = |row: usize| {
+        let together = ImpactsAtOnce::Sampled(row as u64);
+        let options = Options { surface: Some(surface), together, ..Options::default() };
+        let Start { coordinates, speeds, inputs } = &start;
+        let (coordinates, speeds, inputs) = (coordinates.clone(), speeds.clone(), inputs.clone());
+        Ok(Case { mechanism: &groove, time: 0.0, coordinates, speeds, inputs, options, until: 0.22 })
+    };
+    let drawn = |batch: &Batch<'_>| -> Vec<Outcome> {
+        simulate_many(400, case, batch).into_iter().flatten().collect()
+    };
+    let outcomes = drawn(&Batch::default());
+    let set = OutcomeSet::of(&outcomes, &Options::default());
+    assert_eq!((set.motions, set.failed, set.ends.len(), set.unseen()), (400, 0, 3, 0.0), "{:?}", set.ends);
+    // Together in half of them, each wall first in a quarter.
+    let counts: Vec<usize> = set.ends.iter().map(|end| end.count).collect();
+    assert!(counts[0].abs_diff(200) < 40 && counts[1].abs_diff(100) < 35, "{counts:?}");
+    let sideways: Vec<f64> = set.ends.iter().map(|end| outcomes[end.row].speeds[1]).collect();
+    assert!(
+        sideways[0].abs() < 1e-12 && (sideways[1] + sideways[2]).abs() < 1e-12 && sideways[1].abs() > 0.1
+    );
+    // The orders are those of sequential impacts, and the tie is that of impacts at once.
+    for (together, of) in [(ImpactsAtOnce::Approaching, &[0][..]), (ImpactsAtOnce::Sequential, &[1, 2])] {
+        let options = Options { surface: Some(surface), together, ..Options::default() };
+        let end = run(&groove, &start, options, 0.22);
+        let near = |&place: &usize| {
+            let other = &outcomes[set.ends[place].row];
+            end.coordinates.iter().zip(&other.coordinates).all(|(a, b)| (a - b).abs() < 1e-12)
+        };
+        assert!(of.iter().any(near), "{together:?}: {:?}", end.coordinates);
+    }
+    // The draws depend on the seed and the state alone.
+    assert_eq!(digest(&outcomes), digest(&drawn(&Batch { threads: Some(1), ..Batch::default() })));
 }
 
 /// Six discs in a pyramid can stand from mu = 0.434 on (a linear program says so), and below they cannot.

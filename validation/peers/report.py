@@ -80,6 +80,30 @@ def tables(name):
     return out
 
 
+NEAR = 0.001  # m
+
+
+def outcomes(name):
+    """What the set of outcomes holds."""
+    with open(RESULTS / f"{name}_outcomes.csv") as file:
+        rows = list(csv.DictReader(file))
+    column = lambda key: np.array([float(row[key]) for row in rows])
+    share = lambda holds: f"{100 * np.mean(holds):.1f} %"
+    several = column("faces") > 1
+    return [
+        "| of the judged tosses | share |",
+        "| --- | --- |",
+        f"| the drawn ends are more than 1 mm apart | {share(column('width') > NEAR)} |",
+        f"| the drawn ends are on several faces | {share(several)} |",
+        f"| the measured face is that of the single prediction | {share(column('face_single'))} |",
+        f"| the measured face is among the drawn ones | {share(column('face_drawn'))} |",
+        f"| the measured centre is within 1 mm of the single prediction, along both horizontal axes | {share(column('off_single') <= NEAR)} |",
+        f"| the measured centre is within 1 mm of the range of the drawn ones | {share(column('outside') <= NEAR)} |",
+        "",
+        f"Median distance of the measured centre from the single prediction {1000 * np.median(column('off_single')):.1f} mm, from the range of the drawn ones {1000 * np.median(column('outside')):.1f} mm. Tosses with a motion that failed: {int(column('failed').sum())}.",
+    ]
+
+
 def picture(name):
     import matplotlib
 
@@ -114,6 +138,9 @@ def main():
     check = "--check" in sys.argv
     page = DOCS / "validation.md"
     text = before = page.read_text()
+    begin, end = "<!-- outcomes of the cube -->\n", "<!-- end of the outcomes of the cube -->\n"
+    head, rest = text.split(begin)
+    text = head + begin + "\n" + "\n".join(outcomes("cube")) + "\n\n" + end + rest.split(end)[1]
     for name in TARGETS:
         begin, end = f"<!-- results of the {name} -->\n", f"<!-- end of the results of the {name} -->\n"
         if begin not in text:

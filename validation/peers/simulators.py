@@ -73,7 +73,7 @@ class Hodograph:
                 rows.append({"coordinates": list(state[:width]), "speeds": list(state[width:]), "frames": min(longest, problem.horizon(tosses[place]))})
             yield places, {
                 "mechanism": problem.name, "parameters": {k: float(v) for k, v in parameters.items()}, "mu": constants["mu"], "e": constants["e"],
-                "law": variant["law"], "together": variant["together"], "tolerance": 1e-9 if fineness == 1 else 1e-8, "patience": PATIENCE,
+                "law": variant["law"], "together": variant["together"], "seed": variant.get("seed", 0), "tolerance": 1e-9 if fineness == 1 else 1e-8, "patience": PATIENCE,
                 "frame": flight.FRAME, "tosses": rows,
             }
 

@@ -18,8 +18,10 @@ pub struct Request {
     mu: f64,
     e: f64,
     law: String,
-    /// treatment of several impacts: `sequential` or `approaching`
+    /// treatment of several impacts: `sequential`, `approaching`, or `sampled` with the seed
     together: String,
+    #[serde(default)]
+    seed: u64,
     /// relative and absolute tolerance of the integration
     tolerance: f64,
     /// longest computation of a toss, s
@@ -67,11 +69,8 @@ fn predict(mut mechanism: impl Contacts<f64>, request: &Request) -> Result<Answe
     }
     mechanism.set_parameter_values(&values).map_err(|error| error.to_string())?;
     let law = Law::named(&request.law).ok_or(format!("no law `{}`", request.law))?;
-    let together = match request.together.as_str() {
-        "sequential" => ImpactsAtOnce::Sequential,
-        "approaching" => ImpactsAtOnce::Approaching,
-        other => return Err(format!("no treatment `{other}`")),
-    };
+    let together = ImpactsAtOnce::named(&request.together, request.seed)
+        .ok_or(format!("no treatment `{}`", request.together))?;
     let options = Options {
         relative_tolerance: request.tolerance,
         absolute_tolerance: request.tolerance,

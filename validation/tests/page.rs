@@ -65,6 +65,33 @@ fn numbers_of_the_page_are_those_of_the_results() {
     assert!(found >= 2, "{found} simulators on the page");
 }
 
+/// What the set of outcomes holds of the measured ends of the cube.
+#[test]
+fn outcomes_of_the_page_are_those_of_the_results() {
+    let page = std::fs::read_to_string(root().join("../docs/validation.md")).expect("docs/validation.md");
+    let text = std::fs::read_to_string(root().join("results/cube_outcomes.csv")).expect("results");
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    assert_eq!(rows.len(), 495);
+    let place = |name: &str| names.iter().position(|other| *other == name).expect("a column");
+    let share = |name: &str, holds: &dyn Fn(f64) -> bool| {
+        100.0 * rows.iter().filter(|row| holds(row[place(name)])).count() as f64 / rows.len() as f64
+    };
+    for (what, value) in [
+        ("the measured face is that of the single prediction", share("face_single", &|is| is == 1.0)),
+        ("the measured face is among the drawn ones", share("face_drawn", &|is| is == 1.0)),
+        (
+            "the measured centre is within 1 mm of the range of the drawn ones",
+            share("outside", &|m| m <= 1e-3),
+        ),
+    ] {
+        let row = format!("| {what} | {value:.1} % |");
+        assert!(page.contains(&row), "no line {row}");
+    }
+}
+
 /// A toss is fitted if its rank is divisible by ten: what is judged is the rest.
 #[test]
 fn judged_tosses_are_those_of_the_plan() {

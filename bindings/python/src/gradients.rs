@@ -6,7 +6,7 @@ use hodograph_gradients::{
     differentiate, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::Event;
+use hodograph_simulation::{Event, Options};
 use nalgebra::{DMatrix, DVector};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -46,7 +46,7 @@ pub struct Periodicity {
 }
 
 /// Measured motions: name, start, state, times and samples of each.
-type Measured<'py> = Vec<(String, f64, Vec<f64>, Vec<f64>, PyReadonlyArray2<'py, f64>)>;
+pub type Measured<'py> = Vec<(String, f64, Vec<f64>, Vec<f64>, PyReadonlyArray2<'py, f64>)>;
 
 /// What is fitted to what.
 #[derive(FromPyObject)]
@@ -69,7 +69,7 @@ pub struct Fitted<'py> {
     seed: u64,
 }
 
-fn argument(py: Python<'_>, message: &str) -> PyErr {
+pub fn argument(py: Python<'_>, message: &str) -> PyErr {
     errors::argument(py, "argument", "bad_option", message)
 }
 
@@ -102,7 +102,7 @@ fn variables(py: Python<'_>, mechanism: &InterpretedMechanism, names: &[String])
 }
 
 /// A matrix by rows.
-fn matrix<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+pub fn matrix<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let numbers = matrix.transpose().as_slice().to_vec();
     PyArray1::from_vec(py, numbers).reshape([matrix.nrows(), matrix.ncols()])
 }
@@ -235,6 +235,39 @@ pub fn orbit<'py>(
     Ok(all)
 }
 
+/// The mechanism, the options and the variables with which measured motions are compared.
+pub fn compared<'m>(
+    py: Python<'_>,
+    machine: &'m Machine,
+    states: &States<'_>,
+    names: &[String],
+    choices: Choices,
+) -> PyResult<(&'m InterpretedMechanism, Options, Vec<By>)> {
+    let mechanism = machine.derived(py, "comparisons with measured motions")?;
+    let state: State<'_> = motion::start(py, states)?;
+    if !state.inputs.is_empty() {
+        return Err(argument(py, "measured motions of mechanisms with inputs are not compared yet"));
+    }
+    let options = motion::options(py, machine, &state, choices, &Raised::default())?;
+    Ok((mechanism, options, variables(py, mechanism, names)?))
+}
+
+/// Measured motions as a fit takes them.
+pub fn trajectories(measured: &Measured<'_>) -> Vec<Trajectory> {
+    let one = |(name, start, state, times, samples): &(_, _, _, _, PyReadonlyArray2<'_, f64>)| Trajectory {
+        name: String::clone(name),
+        start: *start,
+        state: Vec::clone(state),
+        times: Vec::clone(times),
+        samples: DMatrix::from_row_iterator(
+            samples.shape()[0],
+            samples.shape()[1],
+            samples.as_array().iter().copied(),
+        ),
+    };
+    measured.iter().map(one).collect()
+}
+
 /// Parameters, mu and e fitted to measured motions.
 pub fn fit<'py>(
     py: Python<'py>,
@@ -243,28 +276,8 @@ pub fn fit<'py>(
     fitted: &Fitted<'py>,
     choices: Choices,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mechanism = machine.derived(py, "fits to motions")?;
-    let state: State<'_> = motion::start(py, states)?;
-    if !state.inputs.is_empty() {
-        return Err(argument(py, "motions of mechanisms with inputs are not fitted yet"));
-    }
-    let options = motion::options(py, machine, &state, choices, &Raised::default())?;
-    let by = variables(py, mechanism, &fitted.variables)?;
-    let trajectories: Vec<Trajectory> = fitted
-        .trajectories
-        .iter()
-        .map(|(name, start, state, times, samples)| Trajectory {
-            name: name.clone(),
-            start: *start,
-            state: state.clone(),
-            times: times.clone(),
-            samples: DMatrix::from_row_iterator(
-                samples.shape()[0],
-                samples.shape()[1],
-                samples.as_array().iter().copied(),
-            ),
-        })
-        .collect();
+    let (mechanism, options, by) = compared(py, machine, states, &fitted.variables, choices)?;
+    let trajectories = trajectories(&fitted.trajectories);
     let task = FitTask {
         trajectories: &trajectories,
         measured: &fitted.measured,

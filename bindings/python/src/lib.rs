@@ -22,6 +22,7 @@ mod quantities;
 mod record;
 mod routine;
 mod states;
+mod validation;
 
 use hodograph::Path;
 use pyo3::prelude::*;
@@ -32,6 +33,8 @@ fn hodograph_native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<mechanism::Mechanism>()?;
     module.add_class::<record::Record>()?;
     module.add_function(wrap_pyfunction!(model::check_model, module)?)?;
+    module.add_function(wrap_pyfunction!(validation::signed_ranks, module)?)?;
+    module.add_function(wrap_pyfunction!(validation::wilson_interval, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::solve_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::derivative_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::characteristics_rows, module)?)?;

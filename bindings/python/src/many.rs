@@ -6,8 +6,8 @@ use std::time::Duration;
 use hodograph::{ComponentKind, Contacts, State, StateError};
 use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
-    Batch, Case, ContactLaw, ErrorKind, Event, EventFunction, Options, Outcome, SimulationError, StopAt,
-    Watch, digest, simulate_many,
+    Batch, Case, ContactLaw, ErrorKind, Event, EventFunction, ImpactsAtOnce, Options, Outcome,
+    SimulationError, StopAt, Watch, digest, simulate_many,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -81,6 +81,7 @@ pub fn simulate<'py>(
         laws,
         tolerance,
         max_step: choices.max_step.unwrap_or(machine.greatest_step(false)),
+        together: choices.together(py)?,
         events: choices.functions(&raised),
         until,
     };
@@ -157,6 +158,7 @@ struct Plan<'a> {
     laws: Vec<(usize, ContactLaw)>,
     tolerance: f64,
     max_step: f64,
+    together: ImpactsAtOnce,
     events: Vec<EventFunction>,
     until: f64,
 }
@@ -190,6 +192,11 @@ impl Plan<'_> {
             absolute_tolerance: self.tolerance,
             max_step: self.max_step,
             events: self.events.clone(),
+            together: match self.together {
+                // Each row has draws of its own.
+                ImpactsAtOnce::Sampled(seed) => ImpactsAtOnce::Sampled(seed.wrapping_add(row as u64)),
+                together => together,
+            },
             ..Options::default()
         };
         options.surfaces = defaults::surfaces(&machine, &state, all, &self.own)

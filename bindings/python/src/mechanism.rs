@@ -23,6 +23,7 @@ use crate::motion::Choices;
 use crate::record::{Record, Samples};
 use crate::routine::Routine;
 use crate::states::States;
+use crate::validation::{self, Judged};
 use crate::{closed, collisions, errors, many, model, motion};
 
 /// A model with its derivation, if it has one, and parameters.
@@ -462,6 +463,17 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyDict>> {
         let states = self.states(py, [None; 6])?;
         gradients::fit(py, &self.inner, &states, &fitted, choices)
+    }
+
+    /// Errors of predictions of motions.
+    fn _validate<'py>(
+        &self,
+        py: Python<'py>,
+        judged: Judged<'py>,
+        choices: Choices,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let states = self.states(py, [None; 6])?;
+        validation::validate(py, &self.inner, &states, &judged, choices)
     }
 
     /// The page, the recording or the curves of a motion.

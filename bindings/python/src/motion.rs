@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use hodograph::{Cause, ComponentKind, Contacts, State};
 use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
-    ContactLaw, ContactPhase, Drive, EnergyAccount, Event, EventFunction, EventKind, InputFunction, Options,
-    Progress, Simulation, SimulationError,
+    ContactLaw, ContactPhase, Drive, EnergyAccount, Event, EventFunction, EventKind, ImpactsAtOnce,
+    InputFunction, Options, Progress, Simulation, SimulationError,
 };
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyUserWarning;
@@ -50,6 +50,11 @@ pub struct Choices {
     pub tolerance: Option<f64>,
     #[pyo3(item)]
     pub max_step: Option<f64>,
+    /// what contacts do that are struck at one time, and the seed where that is drawn
+    #[pyo3(item)]
+    together: Option<String>,
+    #[pyo3(item)]
+    seed: u64,
     /// inputs as a function of time, coordinates and speeds
     #[pyo3(item)]
     control: Option<Py<PyAny>>,
@@ -173,6 +178,16 @@ impl Choices {
         Ends::new(py, self.events.iter().map(|(name, _)| name.clone()).collect(), &self.stop)
     }
 
+    /// What contacts do that are struck at one time.
+    pub fn together(&self, py: Python<'_>) -> PyResult<ImpactsAtOnce> {
+        let Some(name) = &self.together else { return Ok(ImpactsAtOnce::default()) };
+        ImpactsAtOnce::named(name, self.seed).ok_or_else(|| {
+            let known = ImpactsAtOnce::NAMES.join(", ");
+            let message = format!("`together` is {name:?}: expected one of {known}");
+            errors::argument(py, "together", "bad_option", &message)
+        })
+    }
+
     /// The functions of own events.
     pub fn functions(&self, raised: &Raised) -> Vec<EventFunction> {
         self.events.iter().map(|(_, function)| watched(function, raised)).collect()
@@ -209,6 +224,7 @@ pub fn options(
         relative_tolerance: tolerance,
         absolute_tolerance: tolerance,
         max_step: choices.max_step.unwrap_or(machine.greatest_step(driven)),
+        together: choices.together(py)?,
         surfaces,
         laws,
         events: choices.functions(raised),

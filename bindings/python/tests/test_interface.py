@@ -499,6 +499,25 @@ def test_laws_of_contact():
         m.simulate(0.3, **whole, restitution=fails)
 
 
+def test_draws_find_every_outcome_of_a_tie():
+    m = hodograph.load(ROOT / "tests/data/many_contacts/groove_drop.mech")
+    start = [0.0 if coordinate.name == "y" else coordinate.value or 0.0 for coordinate in m.coordinates]
+    whole = dict(q=np.tile(start, (60, 1)), mu=0.0, e=0.5, law="newton")
+    drawn = m.simulate_many(0.22, **whole, together="sampled", seed=7)
+    ends = sorted(set(np.round(drawn.u[:, 1], 9)))
+    assert len(ends) == 3 and ends[1] == 0.0 and ends[0] == -ends[2] < -0.1
+    assert drawn.digest == m.simulate_many(0.22, **whole, together="sampled", seed=7, threads=1).digest
+    one = m.simulate(0.22, q=start, mu=0.0, e=0.5, law="newton", together="sampled", seed=9)
+    np.testing.assert_array_equal(one.u[-1], drawn.u[2])
+    sequential = m.simulate(0.22, q=start, mu=0.0, e=0.5, law="newton", together="sequential")
+    assert abs(sequential.u[-1, 1]) > 0.1
+    with pytest.raises(hodograph.ArgumentError, match="expected one of approaching, sequential"):
+        m.simulate(0.1, **SURFACE, together="random")
+    for seed in (-1, 1.5, True):
+        with pytest.raises(hodograph.ArgumentError, match="seed"):
+            m.simulate(0.1, **SURFACE, together="sampled", seed=seed)
+
+
 def test_simulate_many():
     m = model("free_box_corner")
     rows = 24

@@ -220,19 +220,28 @@ def test_orbits_and_branches_of_the_bouncing_ball_on_a_plate():
     assert caught.value.kind == "no_return"
 
 
+def thrown(m, rng, count, until, surface):
+    """Motions from starts near that of the model and outside of what it can touch, as tables."""
+    drawn = np.array([[q.value + 0.1 * rng.normal() for q in m.coordinates] for _ in range(10 * count)])
+    starts = drawn[m.gap(m.contacts[0], drawn) > 0][:count]
+    assert len(starts) == count
+    return [m.simulate(until, 0.02, q=start, **surface).columns() for start in starts]
+
+
+def measured(motion, rng):
+    """The same with an error of 1e-3 in all rows but the first."""
+    error = lambda column: 1e-3 * np.r_[0, rng.normal(size=len(column) - 1)]
+    return {name: column if name == "time" else column + error(column) for name, column in motion.items()}
+
+
 def test_parameters_are_fitted_to_motions():
-    m = model("planar_double_pendulum")
-    surface = dict(mu=0.2, e=0.6, law="poisson")
-    rng = np.random.default_rng(7)
-    motions = []
-    for _ in range(4):
-        motion = m.simulate(0.6, 0.02, q=[q.value + 0.1 * rng.normal() for q in m.coordinates], **surface)
-        motions.append(motion.columns())
+    m, surface, rng = model("planar_double_pendulum"), dict(mu=0.2, e=0.6, law="poisson"), np.random.default_rng(7)
+    motions = thrown(m, rng, 4, 0.6, surface)
     mass = next(p.value for p in m.parameters if p.name == "m1")
     fit = m.with_parameters(m1=1.1 * mass).fit(["m1", "e"], motions, mu=0.2, e=0.55, law="poisson")
     assert fit.values["m1"] == pytest.approx(mass, rel=1e-6) and fit.values["e"] == pytest.approx(0.6, abs=1e-6)
     assert fit.surfaces[m.contacts[0]]["e"] == fit.values["e"] and fit.rms < 1e-6 and fit.correlations.shape == (2, 2)
-    noisy = [{name: column if name == "time" else column + 1e-3 * np.r_[0, rng.normal(size=len(column) - 1)] for name, column in motion.items()} for motion in motions]
+    noisy = [measured(motion, rng) for motion in motions]
     fit = m.fit(["e"], noisy, outputs=["q1", "q2"], errors={"q1": 1e-3, "q2": 1e-3}, bootstrap=3, **{**surface, "e": 0.55})
     assert abs(fit.values["e"] - 0.6) < 5 * fit.errors["e"] and fit.rms == pytest.approx(1.0, abs=0.3) and fit.spread["e"] > 0
     noisy[1]["q1"] = noisy[1]["q1"] + 0.2
@@ -242,6 +251,33 @@ def test_parameters_are_fitted_to_motions():
         m.fit(["e"], noisy, huber=3.0, cap=3.0, **surface)
     with pytest.raises(hodograph.ArgumentError, match="there is no column of a motion `time`"):
         m.fit(["e"], [{"q1": [0.0]}], **surface)
+
+
+def test_predictions_of_motions_are_judged():
+    m, surface, rng = model("planar_double_pendulum"), dict(mu=0.2, e=0.6, law="poisson"), np.random.default_rng(11)
+    motions = [measured(motion, rng) for motion in thrown(m, rng, 6, 0.5, surface)]
+    compared = dict(outputs=["q1", "q2"], errors={"q1": 1e-3, "q2": 1e-3}, **surface)
+    judged = m.validate({"e": 0.6}, motions, noise={"q1": 1e-3, "q2": 1e-3}, floor=True, **compared)
+    assert judged.mean == pytest.approx(1.0, abs=0.2) and judged.median < 2 and not judged.failed and (judged.at_rest > 50).all()
+    assert (judged.floor <= judged.errors + 1e-9).all() and (judged.noise > 0.5).all() and judged.predictions[0].shape == (25, 2)
+    # the error of a motion is what its predictions say
+    off = (judged.predictions[2] - np.column_stack([motions[2]["q1"], motions[2]["q2"]])[1:]) / 1e-3
+    assert judged.errors[2] == pytest.approx(np.sqrt((off**2).mean()), rel=1e-12)
+    wrong = m.validate({"e": 0.1}, motions, **compared)
+    difference = judged.against(wrong)
+    assert difference["count"] == 6 and difference["mean"] == pytest.approx(judged.mean - wrong.mean) and difference["mean"] < 0
+    assert difference["p"] == pytest.approx(2 / 2**6) if difference["nearer"] == 6 else difference["p"] > 2 / 2**6
+    right = judged.right({"q1": 5e-3})
+    assert right["right"] == right["count"] == 6 and right["interval"][0] < 1 == right["share"]
+    assert judged.right({"q1": 1e-9})["right"] == 0 and "Validation of 6 motions" in repr(judged)
+    with pytest.raises(hodograph.ArgumentError, match="q9"):
+        judged.right({"q9": 1.0})
+    with pytest.raises(hodograph.ArgumentError, match="expected predictions of the same motions"):
+        judged.against(m.validate({"e": 0.6}, motions[:2], **compared))
+    with pytest.raises(hodograph.ArgumentError, match="nothing"):
+        m.validate({"nothing": 0.6}, motions, **compared)
+    with pytest.raises(hodograph.ArgumentError, match="seed"):
+        m.validate({"e": 0.6}, motions, seed=-1, **compared)
 
 
 def test_pages_figures_and_recordings_of_motions_whatever_made_them(tmp_path):

@@ -350,3 +350,34 @@ fn short_pushes_of_a_table_are_not_stepped_over() {
     let bad = simulate("incline", &[&["--until", "1", "--max-step", "0"], &surface[..]].concat());
     assert!(bad.code == 2 && bad.stderr.contains("--max-step"), "{}", bad.stderr);
 }
+
+/// The set of outcomes of a ball that strikes both walls of a groove at once; a file of rows or a picture of it there is not.
+#[test]
+fn sets_of_outcomes_are_written() {
+    let groove = root().join("tests/data/many_contacts/groove_drop.mech").display().to_string();
+    let surface = ["--mu", "0", "--e", "0.5", "--law", "newton"];
+    let asked = ["--state", "y=0", "--until", "0.22", "--outcomes", "40", "--seed", "5"];
+    let simulate =
+        |more: &[&str]| hodograph(&[&["simulate", &groove], &surface[..], &asked, more].concat(), "");
+    let run = simulate(&[]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let set = &run.lines()[0];
+    assert_eq!(set["outcomes"], 40);
+    assert_eq!((&set["failed"], &set["seed"], &set["different"]), (&0.into(), &5.into(), &3.into()), "{set}");
+    let ends = set["ends"].as_array().unwrap();
+    assert_eq!(ends.iter().map(|end| end["count"].as_u64().unwrap()).sum::<u64>(), 40);
+    let sideways = &set["u"]["uy"];
+    assert!((number(&sideways["least"]) + number(&sideways["greatest"])).abs() < 1e-12, "{sideways}");
+    assert_eq!(simulate(&[]).stdout, run.stdout);
+    let table = simulate(&["--format", "table"]).stdout;
+    assert!(table.contains("40 motions, 3 different ends"), "{table}");
+    for (more, told) in [
+        (&["--format", "csv"][..], "--outcomes has no rows"),
+        (&["--plot", "set.svg"], "--outcomes writes no pictures"),
+        (&["--together", "sequential"], "cannot be used with"),
+        (&["--outcomes", "0"], "--outcomes"),
+    ] {
+        let run = simulate(more);
+        assert!(run.code == 2 && run.stderr.contains(told), "{more:?}: {}", run.stderr);
+    }
+}

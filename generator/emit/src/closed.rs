@@ -144,6 +144,7 @@ impl Emitter<'_> {
                 method(mode, docs_mode, vec![surface.clone()], selects),
                 method(force, docs_force, vec![of_mode, surface], keeps),
             ],
+            in_lanes: false,
             private: quote! {
                 #[inline]
                 fn #shared(

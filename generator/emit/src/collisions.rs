@@ -200,6 +200,7 @@ impl Emitter<'_> {
         let without_collision = quote!(#krate::generated::resolve_without_collision);
         Group {
             methods: vec![method(collide, docs, resolve), method(without, docs_without, without_collision)],
+            in_lanes: false,
             private: quote! {
                 #[inline]
                 fn #shared(

@@ -63,6 +63,7 @@ impl Emitter<'_> {
             }
         });
         let constant = self.constant();
+        let kept = has_parameters.then(|| quote!(parameters));
         quote! {
             #[doc = #docs]
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,6 +101,7 @@ impl Emitter<'_> {
 
             #default
             #constant
+            #krate::generated::in_lanes! { #name #kept }
         }
     }
 

@@ -34,7 +34,7 @@ impl Emitter<'_> {
         }
         let routines = self.contact_routines(contact);
         let methods = routines.iter().map(|routine| self.routine(routine)).collect();
-        let mut groups = vec![Group { methods, ..Group::default() }];
+        let mut groups = vec![Group { methods, in_lanes: true, ..Group::default() }];
         groups.extend(self.collides(contact).then(|| self.collide(contact)));
         groups.extend(self.closes(contact).then(|| self.closed(contact)));
         groups.extend(self.collides(contact).then(|| self.derivatives(contact)));

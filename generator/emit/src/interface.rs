@@ -341,6 +341,8 @@ pub struct Group {
     pub methods: Vec<Method>,
     /// private functions and other items
     pub private: TokenStream,
+    /// whether the methods are those of several states at once, too: they decide nothing for a state
+    pub in_lanes: bool,
 }
 
 impl Group {
@@ -354,6 +356,6 @@ impl Group {
 
 impl From<Method> for Group {
     fn from(method: Method) -> Self {
-        Self { methods: vec![method], private: TokenStream::new() }
+        Self { methods: vec![method], ..Self::default() }
     }
 }

@@ -338,7 +338,7 @@ impl Lanes {
         });
         quote! {
             #[inline(never)]
-            fn #name<T: #krate::Scalar>(
+            fn #name<T: #krate::Number>(
                 shared: &[T; #common_count],
                 given: &[[T; #width]; #given_rows],
                 made: &mut [[T; #width]; #made_rows],

@@ -20,7 +20,7 @@ impl Emitter<'_> {
     pub fn methods(&self) -> Group {
         let routines = self.routines();
         let methods = routines.iter().map(|routine| self.routine(routine));
-        Group { methods: methods.chain(self.linearise()).collect(), ..Group::default() }
+        Group { methods: methods.chain(self.linearise()).collect(), in_lanes: true, ..Group::default() }
     }
 
     /// The routines that do not belong to a contact.

@@ -119,6 +119,7 @@ impl Record {
 
             #krate::generated::serialize_record! { #name #count #(#names)* }
             #krate::generated::record! { #name #count #(#names #labels #units)* }
+            #krate::generated::record_in_lanes! { #name #count #(#names)* }
             #logged
 
             /// The values that the model gives, and 0 where it gives none.

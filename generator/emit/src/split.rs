@@ -196,7 +196,7 @@ impl Emitter<'_> {
         let statements = grouped(statements, &BTreeSet::new());
         quote! {
             #[inline(never)]
-            fn #name<T: #krate::Scalar>(taken: &[T; #takes], #(#earlier: &[T; #lengths],)* #(#shapes)* gives: &mut [T; #gives]) {
+            fn #name<T: #krate::Number>(taken: &[T; #takes], #(#earlier: &[T; #lengths],)* #(#shapes)* gives: &mut [T; #gives]) {
                 #(#numbers)*
                 #statements
             }

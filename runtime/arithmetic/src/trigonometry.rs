@@ -7,10 +7,12 @@
 
 pub mod single;
 
+use core::ops::{Add, Mul, Neg, Sub};
+
 use crate::fused::{FUSED, mul_add};
 
 /// Angles up to here are reduced here, rad.
-const LARGEST: f64 = 524288.0;
+pub const LARGEST: f64 = 524288.0;
 /// 1.5 * 2^52: adding it rounds to an integer, whose last bits are then those of the sum.
 const ROUNDER: f64 = 6755399441055744.0;
 /// pi/2 in three parts, for products that are not rounded: the second has 33 bits, so that what the
@@ -47,9 +49,9 @@ pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
     if !is_within(x) {
         return beyond(x);
     }
-    let (r, low, turns) = reduced(x);
+    let (r, low, shifted) = reduced(x);
     let (sine, cosine) = near_zero(r, low);
-    let quadrant = turns as usize & 3;
+    let quadrant = shifted.to_bits() as usize & 3;
     // In each product below one factor is 0, 1 or -1: no rounding.
     let (s, c) = (QUARTERS[quadrant], QUARTERS[quadrant + 1]);
     (mul_add(sine, c, cosine * s), mul_add(cosine, c, -(sine * s)))
@@ -60,38 +62,61 @@ pub fn beyond(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
+/// A double, or several that undergo the same operations.
+pub trait Doubles:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// This number, as often as there are numbers.
+    fn all(value: f64) -> Self;
+    /// self * b + c, with one rounding where [`FUSED`] says so.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+}
+
+impl Doubles for f64 {
+    #[inline(always)]
+    fn all(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        mul_add(self, b, c)
+    }
+}
+
 /// Whether the angle is small enough to be reduced here.
 #[inline(always)]
 pub fn is_within(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
-/// The difference of an angle and the nearest multiple of pi/2, the rounding error of the difference, and the
-/// multiple, of which the last two bits count.
+/// The difference of an angle and the nearest multiple of pi/2, the rounding error of the difference, and a
+/// number whose last two bits are those of the multiple.
 #[inline(always)]
-pub fn reduced(x: f64) -> (f64, f64, u64) {
-    let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUNDER);
-    let turns = shifted - ROUNDER;
+pub fn reduced<D: Doubles>(x: D) -> (D, D, D) {
+    let shifted = x.mul_add(D::all(core::f64::consts::FRAC_2_PI), D::all(ROUNDER));
+    let turns = shifted - D::all(ROUNDER);
     let (r, low) = if FUSED {
-        let first = mul_add(-turns, HALF_PI[0], x);
-        let r = mul_add(-turns, HALF_PI[1], first);
-        (r, mul_add(-turns, HALF_PI[2], mul_add(-turns, HALF_PI[1], first - r)))
+        let [one, two, three] = HALF_PI.map(D::all);
+        let first = (-turns).mul_add(one, x);
+        let r = (-turns).mul_add(two, first);
+        (r, (-turns).mul_add(three, (-turns).mul_add(two, first - r)))
     } else {
-        let (second, third) = (turns * HALF_PI_SHORT[1], turns * HALF_PI_SHORT[2]);
-        let first = x - turns * HALF_PI_SHORT[0];
+        let [one, two, three] = HALF_PI_SHORT.map(D::all);
+        let (second, third) = (turns * two, turns * three);
+        let first = x - turns * one;
         let less = first - second;
         let r = less - third;
         (r, (less - r - third) + (first - less - second))
     };
-    (r, low, shifted.to_bits())
+    (r, low, shifted)
 }
 
 /// Sine and cosine of `r + low`, from -pi/4 to pi/4.
 #[inline(always)]
-pub fn near_zero(r: f64, low: f64) -> (f64, f64) {
+pub fn near_zero<D: Doubles>(r: D, low: D) -> (D, D) {
     let z = r * r;
-    let sine = r + mul_add(r * z, polynomial(SINE, z), low);
-    let cosine = 1.0 + mul_add(z, mul_add(z, polynomial(COSINE, z), -0.5), -(r * low));
+    let sine = r + (r * z).mul_add(polynomial(SINE, z), low);
+    let cosine = D::all(1.0) + z.mul_add(z.mul_add(polynomial(COSINE, z), D::all(-0.5)), -(r * low));
     (sine, cosine)
 }
 
@@ -109,7 +134,7 @@ pub fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
 }
 
 #[inline(always)]
-fn polynomial(coefficients: [f64; 6], z: f64) -> f64 {
-    let [a, b, c, d, e, f] = coefficients;
-    mul_add(mul_add(mul_add(mul_add(mul_add(f, z, e), z, d), z, c), z, b), z, a)
+fn polynomial<D: Doubles>(coefficients: [f64; 6], z: D) -> D {
+    let [a, b, c, d, e, f] = coefficients.map(D::all);
+    f.mul_add(z, e).mul_add(z, d).mul_add(z, c).mul_add(z, b).mul_add(z, a)
 }

@@ -1,13 +1,12 @@
 //! Sines and cosines of several angles at once, in loops without branches that compilers turn into vector
 //! instructions.
 
-use core::{any::TypeId, array::from_fn, hint::black_box};
+use core::{array::from_fn, hint::black_box};
 
 use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced, turned};
-use nalgebra::convert;
 
 use super::arithmetic::sin_cos;
-use crate::Scalar;
+use crate::Number;
 
 /// Whether the target has instructions that compute several doubles at once.
 const VECTORS: bool = cfg!(any(
@@ -19,24 +18,24 @@ const VECTORS: bool = cfg!(any(
 
 /// Sines and cosines of up to eight angles, each the same bits as [`sin_cos`] gives.
 #[inline(always)]
-pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+pub fn sines_cosines<T: Number, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
     several::<T, N, false>(angles)
 }
 
 /// [`sines_cosines`] as a part of the caller.
 #[inline(always)]
-pub fn sines_cosines_inlined<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+pub fn sines_cosines_inlined<T: Number, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
     several::<T, N, true>(angles)
 }
 
 /// Sines and cosines, with `HERE` as a part of the caller.
 #[inline(always)]
-fn several<T: Scalar, const N: usize, const HERE: bool>(angles: [T; N]) -> ([T; N], [T; N]) {
+fn several<T: Number, const N: usize, const HERE: bool>(angles: [T; N]) -> ([T; N], [T; N]) {
     // Known at compile time; the conversions of a double to a double vanish.
-    if !VECTORS || TypeId::of::<T>() != TypeId::of::<f64>() {
+    if !VECTORS || !T::is_double() {
         return one_by_one(angles);
     }
-    let angles = angles.map(|angle| angle.to_subset_unchecked());
+    let angles = angles.map(|angle| angle.to_double());
     let angle = |lane: usize| angles[lane.min(N - 1)];
     let (sines, cosines) = match N {
         0 | 1 => one_by_one(angles),
@@ -50,7 +49,7 @@ fn several<T: Scalar, const N: usize, const HERE: bool>(angles: [T; N]) -> ([T; 
         }
         _ => one_by_one(angles),
     };
-    (sines.map(convert), cosines.map(convert))
+    (sines.map(T::number), cosines.map(T::number))
 }
 
 /// The first `N` of `LANES` sines and cosines.
@@ -99,14 +98,14 @@ fn of_doubles<const N: usize>(
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     if N > UNROLLED {
         for lane in 0..N {
-            let (r, low, turns) = reduced(angles[lane]);
-            (sines[lane], cosines[lane]) = turned(near_zero(r, low), turns);
+            let (r, low, shifted) = reduced(angles[lane]);
+            (sines[lane], cosines[lane]) = turned(near_zero(r, low), shifted.to_bits());
         }
         return (sines, cosines);
     }
-    let (mut r, mut low, mut turns) = ([0.0; N], [0.0; N], [0; N]);
+    let (mut r, mut low, mut shifted) = ([0.0; N], [0.0; N], [0.0; N]);
     for lane in 0..N {
-        (r[lane], low[lane], turns[lane]) = reduced(angles[lane]);
+        (r[lane], low[lane], shifted[lane]) = reduced(angles[lane]);
     }
     let low = black_box(low);
     for lane in 0..N {
@@ -116,7 +115,7 @@ fn of_doubles<const N: usize>(
         (sines, cosines) = (black_box(sines), black_box(cosines));
     }
     for lane in 0..N {
-        (sines[lane], cosines[lane]) = turned((sines[lane], cosines[lane]), turns[lane]);
+        (sines[lane], cosines[lane]) = turned((sines[lane], cosines[lane]), shifted[lane].to_bits());
     }
     (sines, cosines)
 }
@@ -136,12 +135,12 @@ fn beyond<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
 #[cold]
 #[inline(never)]
 #[expect(clippy::extra_unused_type_parameters, reason = "functions without are compiled with this package")]
-fn far<T: Scalar, const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+fn far<T: Number, const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     one_by_one(angles)
 }
 
 #[inline(always)]
-fn one_by_one<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+fn one_by_one<T: Number, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
     let (mut sines, mut cosines) = (angles, angles);
     for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
         (*sine, *cosine) = sin_cos(*sine);

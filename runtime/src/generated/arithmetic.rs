@@ -1,37 +1,34 @@
-//! The arithmetic operations of generated code, for any scalar. For doubles they give the same bits as
+//! The arithmetic operations of generated code, for any number. For doubles they give the same bits as
 //! `hodograph_generator::arithmetic`.
 
-use core::any::TypeId;
+use hodograph_arithmetic::FUSED;
+use hodograph_arithmetic::elementary::double;
 
-use hodograph_arithmetic::elementary::{double, single};
-use hodograph_arithmetic::{FUSED, hyperbolic, trigonometry};
-use nalgebra::{convert, convert_unchecked};
+use crate::Number;
 
-use crate::Scalar;
-
-/// A literal of the program in the scalar type.
+/// A literal of the program.
 #[inline(always)]
-pub fn number<T: Scalar>(number: f64) -> T {
-    convert(number)
+pub fn number<T: Number>(number: f64) -> T {
+    T::number(number)
 }
 
 /// a * b + c, with one rounding where the feature `fused` is on and the target has the instruction (and never
 /// by a library call).
 #[inline(always)]
-pub fn mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+pub fn mul_add<T: Number>(a: T, b: T, c: T) -> T {
+    if FUSED { a.fused(b, c) } else { a * b + c }
 }
 
 /// a * b - c, likewise.
 #[inline(always)]
-pub fn mul_sub<T: Scalar>(a: T, b: T, c: T) -> T {
-    if FUSED { a.mul_add(b, -c) } else { a * b - c }
+pub fn mul_sub<T: Number>(a: T, b: T, c: T) -> T {
+    if FUSED { a.fused(b, -c) } else { a * b - c }
 }
 
 /// c - a * b, likewise.
 #[inline(always)]
-pub fn neg_mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
-    if FUSED { (-a).mul_add(b, c) } else { c - a * b }
+pub fn neg_mul_add<T: Number>(a: T, b: T, c: T) -> T {
+    if FUSED { (-a).fused(b, c) } else { c - a * b }
 }
 
 /// The square root of x^2 + y^2, without overflow or underflow of the squares. Not by the system's library: it may
@@ -42,134 +39,75 @@ pub fn hypot(x: f64, y: f64) -> f64 {
 
 /// 1 / a
 #[inline(always)]
-pub fn recip<T: Scalar>(a: T) -> T {
+pub fn recip<T: Number>(a: T) -> T {
     T::one() / a
 }
 
 /// Sine and cosine. Those of doubles and singles are our own: faster than the system's, and the same
 /// everywhere.
 #[inline(always)]
-pub fn sin_cos<T: Scalar>(a: T) -> (T, T) {
-    // Known at compile time; the conversions of a number to itself vanish.
-    if TypeId::of::<T>() == TypeId::of::<f64>() {
-        let (sine, cosine) = trigonometry::sin_cos(a.to_subset_unchecked(), beyond);
-        (convert(sine), convert(cosine))
-    } else if TypeId::of::<T>() == TypeId::of::<f32>() {
-        let (sine, cosine) = trigonometry::single::sin_cos(convert_unchecked::<T, f32>(a));
-        (convert(sine), convert(cosine))
-    } else {
-        a.sin_cos()
-    }
-}
-
-#[cold]
-#[inline(never)]
-fn beyond(a: f64) -> (f64, f64) {
-    trigonometry::beyond(a)
+pub fn sin_cos<T: Number>(a: T) -> (T, T) {
+    a.sin_cos()
 }
 
 /// Sine.
 #[inline(always)]
-pub fn sin<T: Scalar>(a: T) -> T {
+pub fn sin<T: Number>(a: T) -> T {
     sin_cos(a).0
 }
 
 /// Cosine.
 #[inline(always)]
-pub fn cos<T: Scalar>(a: T) -> T {
+pub fn cos<T: Number>(a: T) -> T {
     sin_cos(a).1
 }
 
 macro_rules! functions {
-    ($($(#[$doc:meta])* $name:ident => $method:ident),* $(,)?) => {$(
+    ($($(#[$doc:meta])* $name:ident($($argument:ident),+)),* $(,)?) => {$(
         $(#[$doc])*
         #[inline(always)]
-        pub fn $name<T: Scalar>(a: T) -> T {
-            a.$method()
+        pub fn $name<T: Number>($($argument: T),+) -> T {
+            Number::$name($($argument),+)
         }
     )*};
 }
 
 functions! {
     /// Square root: right to the last place everywhere.
-    sqrt => sqrt,
+    sqrt(a),
     /// Magnitude.
-    abs => abs,
-}
-
-/// Functions of one number: those of doubles (first module) and singles (second) are the same on every
-/// machine, those of other numbers their own.
-macro_rules! same_everywhere {
-    ($($(#[$doc:meta])* $name:ident => $double:ident::$function:ident, $single:ident::$single_function:ident, $method:ident),* $(,)?) => {$(
-        $(#[$doc])*
-        #[inline]
-        pub fn $name<T: Scalar>(a: T) -> T {
-            // known at compile time, as for sine and cosine
-            if TypeId::of::<T>() == TypeId::of::<f64>() {
-                convert($double::$function(a.to_subset_unchecked()))
-            } else if TypeId::of::<T>() == TypeId::of::<f32>() {
-                convert($single::$single_function(convert_unchecked::<T, f32>(a)))
-            } else {
-                a.$method()
-            }
-        }
-    )*};
-}
-
-same_everywhere! {
+    abs(a),
     /// Tangent.
-    tan => double::tan, single::tan, tan,
+    tan(a),
     /// Arc sine.
-    asin => double::asin, single::asin, asin,
+    asin(a),
     /// Arc cosine.
-    acos => double::acos, single::acos, acos,
+    acos(a),
     /// Arc tangent.
-    atan => double::atan, single::atan, atan,
+    atan(a),
     /// Exponential.
-    exp => double::exp, single::exp, exp,
+    exp(a),
     /// Natural logarithm.
-    log => double::ln, single::ln, ln,
+    log(a),
     /// Hyperbolic sine.
-    sinh => hyperbolic::sinh, single::sinh, sinh,
+    sinh(a),
     /// Hyperbolic cosine.
-    cosh => hyperbolic::cosh, single::cosh, cosh,
+    cosh(a),
     /// Hyperbolic tangent.
-    tanh => hyperbolic::tanh, single::tanh, tanh,
-}
-
-/// Angle of (b, a).
-#[inline(always)]
-pub fn atan2<T: Scalar>(a: T, b: T) -> T {
-    if TypeId::of::<T>() == TypeId::of::<f64>() {
-        convert(double::atan2(a.to_subset_unchecked(), b.to_subset_unchecked()))
-    } else if TypeId::of::<T>() == TypeId::of::<f32>() {
-        convert(single::atan2(convert_unchecked::<T, f32>(a), convert_unchecked::<T, f32>(b)))
-    } else {
-        a.atan2(b)
-    }
-}
-
-/// 1 if a is not negative, else -1.
-#[inline(always)]
-pub fn sign<T: Scalar>(a: T) -> T {
-    if a >= T::zero() { T::one() } else { -T::one() }
-}
-
-/// The lesser.
-#[inline(always)]
-pub fn min<T: Scalar>(a: T, b: T) -> T {
-    if a < b { a } else { b }
-}
-
-/// The greater.
-#[inline(always)]
-pub fn max<T: Scalar>(a: T, b: T) -> T {
-    if a > b { a } else { b }
+    tanh(a),
+    /// Angle of (b, a).
+    atan2(a, b),
+    /// 1 if a is not negative, else -1.
+    sign(a),
+    /// The lesser.
+    min(a, b),
+    /// The greater.
+    max(a, b),
 }
 
 /// A power with an exponent that is not negative, by squaring.
 #[inline]
-pub fn power<T: Scalar>(a: T, exponent: i32) -> T {
+pub fn power<T: Number>(a: T, exponent: i32) -> T {
     let (mut left, mut square, mut product) = (exponent.unsigned_abs(), a, T::one());
     while left > 0 {
         if left & 1 == 1 {

@@ -2,38 +2,25 @@
 //! of slices.
 
 use super::{mul_add, number};
-use crate::{ParameterError, Scalar, StateError};
+use crate::{Number, ParameterError, Scalar, StateError};
 
-/// A value counts as zero where it is at most this times its scale: 2^-40.
-const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
-
-/// Whether a value counts as zero relative to its scale, or one of the two is NaN.
+/// Whether a value counts as zero relative to its scale, or one of the two is NaN; of several values: one.
 #[inline(always)]
-pub fn vanishes_beside<T: Scalar>(value: T, scale: T) -> bool {
-    let above = value.abs() > number::<T>(VANISHING) * scale.abs();
-    !above && !is_infinite(value)
+pub fn vanishes_beside<T: Number>(value: T, scale: T) -> bool {
+    value.vanishes_beside(scale)
 }
 
-/// Whether a divisor is infinite. It is then large, not zero, and the quotient is 0; this is asked only where
-/// the scale is infinite too.
-#[cold]
-#[inline(never)]
-fn is_infinite<T: Scalar>(value: T) -> bool {
-    value.abs() > T::zero() && !value.is_finite()
-}
-
-/// Whether a value is zero or NaN.
+/// Whether a value is zero or NaN; of several values: one.
 #[inline(always)]
-pub fn vanishes<T: Scalar>(value: T) -> bool {
-    let above = value.abs() > T::zero();
-    !above
+pub fn vanishes<T: Number>(value: T) -> bool {
+    value.vanishes()
 }
 
 /// The error of a state in which `value` counts as zero relative to `scale`.
 #[cold]
 #[inline(never)]
-pub fn singular<T: Scalar>(value: T, scale: T, what: &'static str) -> StateError {
-    if value.is_finite() && scale.is_finite() { StateError::Singular { what } } else { StateError::NotFinite }
+pub fn singular<T: Number>(value: T, scale: T, what: &'static str) -> StateError {
+    value.singular(scale, what)
 }
 
 /// Whether all values are finite, by one operation each and without branches.
@@ -41,7 +28,7 @@ pub fn singular<T: Scalar>(value: T, scale: T, what: &'static str) -> StateError
 /// From `MANY` values on there are four sums: in one each operation waits for the one before, which takes
 /// longer than all else in a mass matrix.
 #[inline(always)]
-pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
+pub fn all_finite<T: Number, const N: usize>(values: [T; N]) -> bool {
     /// Fewer values cost more instructions in four sums than they save time.
     const MANY: usize = 16;
     if N < MANY {
@@ -64,7 +51,7 @@ pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
 /// Whether all values of a table are finite, likewise. Its rows are long: there are sixteen sums, since in
 /// fewer each would wait for the one before.
 #[inline(always)]
-pub fn all_rows_finite<T: Scalar, const WIDTH: usize, const ROWS: usize>(rows: &[[T; WIDTH]; ROWS]) -> bool {
+pub fn all_rows_finite<T: Number, const WIDTH: usize, const ROWS: usize>(rows: &[[T; WIDTH]; ROWS]) -> bool {
     let mut sums = [T::zero(); 16];
     let mut sixteens = rows.as_flattened().chunks_exact(16);
     for sixteen in sixteens.by_ref() {

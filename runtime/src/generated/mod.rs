@@ -9,6 +9,7 @@ mod closed;
 pub mod construction;
 mod contact;
 mod feature;
+mod in_lanes;
 mod log;
 mod records;
 mod saltation;
@@ -52,11 +53,11 @@ pub use serial::{FieldIndex, FieldNames};
 
 #[doc(hidden)]
 pub use crate::{
-    __log as log, __record as record, __serialize_outcome as serialize_outcome,
-    __serialize_record as serialize_record,
+    __in_lanes as in_lanes, __log as log, __record as record, __record_in_lanes as record_in_lanes,
+    __serialize_outcome as serialize_outcome, __serialize_record as serialize_record,
 };
 
 /// Generated code names this constant, so that a module made by a generator of another version does not
 /// compile with this runtime.
 #[doc(hidden)]
-pub const GENERATED_CODE_FORMAT_6: () = ();
+pub const GENERATED_CODE_FORMAT_7: () = ();

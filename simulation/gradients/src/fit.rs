@@ -7,10 +7,10 @@ use std::fmt;
 use hodograph::{ComponentKind, Mechanism, State, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
+use hodograph_simulation::random::next_random;
 use nalgebra::{DMatrix, DVector};
 
 use crate::family::{resolve_surfaces, value_of, with_values};
-use crate::random::next_random;
 use crate::trajectory::{Trajectory, follow};
 use crate::{By, GradientError, Loss, differentiate};
 

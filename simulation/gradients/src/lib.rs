@@ -42,7 +42,6 @@ mod loss;
 mod modes;
 mod motion;
 mod orbit;
-mod random;
 pub mod statistics;
 mod trajectory;
 pub mod validation;

@@ -5,10 +5,10 @@
 
 use hodograph::{ComponentKind, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::random::next_random;
 use hodograph_simulation::{Options, SimulationError};
 use nalgebra::DMatrix;
 
-use crate::random::next_random;
 use crate::trajectory::follow;
 use crate::{By, FitError, FitTask, Loss, Trajectory, fit};
 

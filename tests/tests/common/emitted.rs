@@ -1,6 +1,7 @@
 //! The emitted modules of all shipped models behind one interface; `tests/build.rs` writes the
 //! implementations.
 
+use hodograph::lanes::{F64x4, Lanes};
 use hodograph::nalgebra::SMatrix;
 use hodograph::{Contacts, StateError, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
@@ -16,6 +17,10 @@ pub trait Emitted {
     fn call(&self, routine: &str, at: &Inputs) -> Option<Result<Vec<f64>, String>>;
     /// the routines with another one beside them, `.._into`, that writes the answer in place
     fn in_place(&self) -> &'static [&'static str];
+    /// the routines that tests call for four states at once
+    fn of_lanes(&self) -> &'static [&'static str];
+    /// a routine for four states at once, if it is one of these; the error is its message
+    fn in_lanes(&self, routine: &str, at: &[Inputs; 4]) -> Option<Result<Vec<F64x4>, String>>;
     /// the derivative of a routine along a direction (coordinates, speeds, inputs), by numbers that carry
     /// derivatives
     fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>>;
@@ -94,7 +99,7 @@ macro_rules! beside {
                 .iter()
                 .chain(found.by_speeds.row(row).iter())
                 .copied()
-                .collect::<Vec<f64>>();
+                .collect::<Vec<_>>();
             let inputs = found.by_inputs.row(row).iter().copied().collect();
             [vec![found.value[row]], derivatives, inputs].concat()
         };

@@ -31,6 +31,7 @@ from .gradients import Branch, EventGradient, Fit, MotionGradient, Orbit
 from .mechanism import Derivatives, Linearisation, Mechanism, NumericMechanism, restored
 from .motion import Event, Simulation, SimulationError, Simulations, read_motion
 from .results import Characteristics, ClosedContact, Collision, CollisionDerivative, Hodograph, Impact, ImpactDerivative
+from .validation import Validation
 
 __version__: str = _native.__version__
 
@@ -38,7 +39,7 @@ __all__ = [
     "ArgumentError", "Branch", "Characteristics", "ClosedContact", "Collision", "CollisionDerivative", "Contact", "ContactError", "DerivationError",
     "Derivatives", "Diagnostic", "Event", "EventGradient", "Fit", "Hodograph", "HodographError", "Impact", "ImpactDerivative", "ImpactError",
     "Linearisation", "Mechanism", "ModelError", "MotionGradient", "NumericMechanism", "Orbit", "ParameterError", "Quantity", "Simulation",
-    "SimulationError", "Simulations", "StateError", "__version__", "characteristics", "check", "derivative", "hodograph", "load", "load_motion", "solve",
+    "SimulationError", "Simulations", "StateError", "Validation", "__version__", "characteristics", "check", "derivative", "hodograph", "load", "load_motion", "solve",
 ]  # fmt: skip
 
 Path = Union[str, "os.PathLike[str]"]

@@ -15,6 +15,7 @@ from .arguments import Column, Floats, Rows, index, number, numbers, optional_nu
 from .description import Contact, Quantity
 from .errors import ArgumentError, HodographError
 from .gradients import Branch, Fit, MotionGradient, Orbit
+from .validation import Validation
 from .motion import Simulation, Simulations
 from .results import Characteristics, ClosedContact, Collision, CollisionDerivative, Impact, ImpactDerivative
 
@@ -430,7 +431,7 @@ class Mechanism(_native.Mechanism):
         surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None, control: Optional[Control] = None, period: Optional[float] = None,
         max_step: Optional[float] = None, mu_static: Optional[float] = None, mu_impact: Optional[float] = None, sliding: SpeedLaw = None,
         restitution: SpeedLaw = None, rolling: Optional[float] = None, spinning: Optional[float] = None,
-        events: Optional[Mapping[str, Watched]] = None, stop: Union[None, str, Iterable[str]] = None,
+        events: Optional[Mapping[str, Watched]] = None, stop: Union[None, str, Iterable[str]] = None, together: Optional[str] = None, seed: int = 0,
     ) -> Simulation:
         """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
 
@@ -445,11 +446,13 @@ class Mechanism(_native.Mechanism):
         continuously (it must be smooth then). What it raises ends the motion, as Ctrl-C does; an exception that ends a motion under way has the attribute
         ``motion``, the :class:`Simulation` up to there. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
         ``events``: functions of time, q and u by name, whose zeros are events of that name; ``stop``: kinds or names of events at which the motion ends.
+        ``together``: what contacts do that are struck at one time: 'approaching', 'sequential', 'simultaneous', 'lzb', 'stop', or 'sampled': groups and orders
+        are drawn with this ``seed``.
         """
         if period is not None and control is None:
             raise ArgumentError("`period` is that of `control`, which is missing", kind="bad_option", place="period")
         choices = self._choices(
-            surfaces, tolerance, max_step, control, period, events, stop,
+            surfaces, tolerance, max_step, control, period, events, stop, together, seed,
             mu=mu, e=e, law=law, mu_static=mu_static, mu_impact=mu_impact, sliding=sliding, restitution=restitution, rolling=rolling, spinning=spinning,
         )  # fmt: skip
         try:
@@ -462,10 +465,12 @@ class Mechanism(_native.Mechanism):
             raise
 
     def _choices(
-        self, own: Any, tolerance: Any, max_step: Any, control: Any = None, period: Any = None, events: Any = None, stop: Any = None, **all_contacts: Any
+        self, own: Any, tolerance: Any, max_step: Any, control: Any = None, period: Any = None, events: Any = None, stop: Any = None,
+        together: Any = None, seed: Any = 0, **all_contacts: Any,
     ) -> dict[str, Any]:
         """What a motion is to be like: the surfaces of all contacts and of those that have one of their own, and all else."""
         names = [stop] if isinstance(stop, str) else list(stop or ())
+        _check_seed(seed)
         of = lambda given: (optional_number(given.get("mu"), "mu"), optional_number(given.get("e"), "e"), given.get("law"))  # noqa: E731
         some = lambda given, name: optional_number(given.get(name), name)  # noqa: E731
         law = lambda given: (  # noqa: E731
@@ -481,7 +486,7 @@ class Mechanism(_native.Mechanism):
             "surface": of(all_contacts), "law": law(all_contacts), "surfaces": [(contact, of(given)) for contact, given in own],
             "laws": [(contact, law(given)) for contact, given in own], "tolerance": optional_number(tolerance, "tolerance"),
             "max_step": optional_number(max_step, "max_step"), "control": control, "period": optional_number(period, "period"),
-            "events": list((events or {}).items()), "stop": [str(name) for name in names],
+            "events": list((events or {}).items()), "stop": [str(name) for name in names], "together": together, "seed": seed,
         }  # fmt: skip
 
     def simulate_many(
@@ -490,7 +495,7 @@ class Mechanism(_native.Mechanism):
         mu_impact: Optional[Column] = None, sliding: SpeedLaw = None, restitution: SpeedLaw = None, rolling: Optional[Column] = None,
         spinning: Optional[Column] = None, tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None,
         max_step: Optional[float] = None, threads: Optional[int] = None, progress: Optional[Callable[[int, int], object]] = None,
-        events: Optional[Mapping[str, Watched]] = None, stop: Union[None, str, Iterable[str]] = None,
+        events: Optional[Mapping[str, Watched]] = None, stop: Union[None, str, Iterable[str]] = None, together: Optional[str] = None, seed: int = 0,
     ) -> Simulations:
         """Many motions to the time ``until``, one for each row of ``q`` (k, n), ``u``, ``inputs``, ``time`` (k,), of the parameters of a mechanism of
         :meth:`with_parameters`, and of ``mu``, ``e``, ``mu_static``, ``mu_impact``, ``rolling`` and ``spinning`` (numbers or (k,)), as
@@ -498,10 +503,10 @@ class Mechanism(_native.Mechanism):
 
         Rows share the cores (``threads``: so many); outcomes have the same bits in any order and on any number of threads. What is wrong with a row is
         the outcome of that row. ``progress``: a function of the rows that are done and of all rows, called now and then; what it raises ends the batch, as
-        Ctrl-C does. A motion ends at the first of its events that ``stop`` names ('rest', 'collision', .., or one of ``events``). All else is as for
-        :meth:`simulate`.
+        Ctrl-C does. A motion ends at the first of its events that ``stop`` names ('rest', 'collision', .., or one of ``events``). With ``together`` 'sampled'
+        each row draws with the seed ``seed`` plus its number. All else is as for :meth:`simulate`.
         """
-        choices = self._choices(surfaces, tolerance, max_step, events=events, stop=stop, law=law, sliding=sliding, restitution=restitution)
+        choices = self._choices(surfaces, tolerance, max_step, events=events, stop=stop, together=together, seed=seed, law=law, sliding=sliding, restitution=restitution)  # noqa: E501
         if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
             raise ArgumentError(f"`threads` is {threads!r}: expected a whole number, at least 1", kind="bad_option", place="threads")
         columns = (mu, e, mu_static, mu_impact, rolling, spinning)
@@ -570,6 +575,18 @@ class Mechanism(_native.Mechanism):
         its start, taken as it is; NaN in later rows is what was not measured. ``outputs``: the columns that are compared (else all); ``errors``: by what the
         differences of a column are divided, by name (else the standard deviation of the column); ``bootstrap``: so often motions are drawn anew.
         ``huber``: differences beyond so many errors count in proportion to their size, not to its square; ``cap``: as if they were so large."""
+        compared = self._compared(motions, outputs, errors)
+        _check_seed(seed)
+        fitted = {
+            **compared, "variables": list(variables),
+            "huber": optional_number(huber, "huber"), "cap": optional_number(cap, "cap"), "bootstrap": bootstrap, "seed": seed,
+        }  # fmt: skip
+        if huber is not None and cap is not None:
+            raise ArgumentError("`huber` and `cap` exclude each other", kind="bad_option", place="cap")
+        return Fit(self._fit(fitted, self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)), tuple(variables))
+
+    def _compared(self, motions: Any, outputs: Optional[Sequence[str]], errors: Optional[Mapping[str, float]]) -> dict[str, Any]:
+        """Measured motions, the columns that are compared, and by what their differences are divided."""
         names = [*self._names_of("coordinates"), *self._names_of("speeds")]
         start = [quantity.value for quantity in (*self.coordinates, *self.speeds)]
         all_motions = list(motions) if isinstance(motions, (list, tuple)) else [motions]
@@ -591,13 +608,31 @@ class Mechanism(_native.Mechanism):
         units = [number((errors or {}).get(name, deviation(name)), name) for name in wanted]
         if min(units) <= 0:
             raise ArgumentError("`errors`: expected positive numbers", kind="bad_option", place="errors")
-        fitted = {
-            "trajectories": trajectories, "measured": [names.index(name) for name in wanted], "units": units, "variables": list(variables),
-            "huber": optional_number(huber, "huber"), "cap": optional_number(cap, "cap"), "bootstrap": bootstrap, "seed": seed,
+        return {"trajectories": trajectories, "measured": [names.index(name) for name in wanted], "units": units}
+
+    def validate(
+        self, values: Mapping[str, float], motions: Any, *, outputs: Optional[Sequence[str]] = None, errors: Optional[Mapping[str, float]] = None,
+        noise: Optional[Mapping[str, float]] = None, floor: bool = False, seed: int = 1, mu: Optional[float] = None, e: Optional[float] = None,
+        law: Optional[str] = None, tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None,
+        max_step: Optional[float] = None,
+    ) -> Validation:
+        """How well the mechanism predicts measured motions with ``values`` by name, those of a :class:`Fit` or of the JSON of ``hodograph fit``, as
+        :class:`Validation`. ``motions``, ``outputs``, ``errors`` and the surface are those of :meth:`fit`.
+
+        ``noise``: standard deviations of measurement by column: the error of replicas in which nothing but these differs; ``floor``: the error that
+        is left where each motion has values of its own."""
+        compared = self._compared(motions, outputs, errors)
+        _check_seed(seed)
+        names = [*self._names_of("coordinates"), *self._names_of("speeds")]
+        wanted = [names[place] for place in compared["measured"]]
+        for name in noise or {}:
+            index("column that is compared", name, wanted)
+        judged = {
+            **compared, "variables": list(values), "values": [number(value, name) for name, value in values.items()], "floor": bool(floor), "seed": seed,
+            "noise": None if noise is None else [number(noise.get(name, 0.0), name) for name in wanted],
         }  # fmt: skip
-        if huber is not None and cap is not None:
-            raise ArgumentError("`huber` and `cap` exclude each other", kind="bad_option", place="cap")
-        return Fit(self._fit(fitted, self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)), tuple(variables))
+        found = self._validate(judged, self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law))
+        return Validation(found, wanted, [samples for *_, samples in compared["trajectories"]])
 
     def equations(self, format: str = "text") -> str:
         """The equations to read: 'text', 'latex' or 'html' (a page)."""
@@ -633,6 +668,11 @@ def _restored(kind: type[Mechanism], text: str, derivation: Optional[str], param
 def restored(text: str, derivation: Optional[str], parameters: Floats) -> Mechanism:
     """A mechanism of the texts of model and derivation, and its parameters."""
     return _restored(Mechanism if derivation is not None else NumericMechanism, text, derivation, parameters)
+
+
+def _check_seed(seed: Any) -> None:
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
+        raise ArgumentError(f"`seed` is {seed!r}: expected a whole number from 0 to 2^64 - 1", kind="bad_option", place="seed")
 
 
 def _measured(motion: Any, names: Sequence[str]) -> tuple[Floats, dict[str, Floats]]:

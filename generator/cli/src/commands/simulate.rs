@@ -3,6 +3,7 @@
 mod figure;
 mod inputs;
 mod lines;
+mod outcomes;
 mod pictures;
 mod summary;
 pub mod surfaces;
@@ -19,6 +20,7 @@ use hodograph_interpreter::{InterpretedMechanism, motion};
 use hodograph_simulation::{Event, ImpactsAtOnce, Options, Simulation, SimulationError};
 
 use self::lines::{Format, Lines};
+use self::outcomes::OutcomesArguments;
 use self::pictures::{PictureFiles, Pictures};
 use self::surfaces::MotionSurfaces;
 use crate::answers::is_terminal;
@@ -75,6 +77,8 @@ pub struct Arguments {
     /// with --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and the default is 1
     #[arg(long, value_name = "CONTACT=NUMBER")]
     stiffness: Vec<String>,
+    #[command(flatten)]
+    outcomes: OutcomesArguments,
     /// the format of states and events [default: tables at a terminal, else JSON]
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
@@ -173,6 +177,14 @@ fn simulated(arguments: &Arguments) -> Outcome {
         compare_orders: arguments.spread,
         ..Options::default()
     };
+    if let Some(asked) = arguments.outcomes.asked() {
+        if arguments.pictures.wanted() {
+            return Err(Stop::Call(
+                "--outcomes writes no pictures: leave --html, --plot and --mcap out".to_owned(),
+            ));
+        }
+        return outcomes::outcomes(&mechanism, &state, &options, until, asked, format);
+    }
     let mut lines = Lines::new(&mechanism, format, arguments.pictures.wanted())?;
     let text = || plain(&files::model(&arguments.model));
     let setup = || Setup::of(&machine.mechanism, &state.to_numeric(), &options.surfaces, text());

@@ -11,7 +11,7 @@
 /// A method of [`Pendulum`] that returns a `Result` fails where the state is singular or a result is not finite (`StateError`). A method that solves a collision also fails where it has no outcome (`CollisionError`); a method for the force of a closed contact fails where no finite force satisfies Coulomb's law (`ClosedContactError`).
 #[allow(non_snake_case, dead_code, unused_variables, clippy::all)]
 pub mod pendulum {
-    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_6;
+    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_7;
     /// Parameters of the mechanism.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Parameters<T = f64> {
@@ -27,6 +27,9 @@ pub mod pendulum {
     }
     ::hodograph::generated::record! {
         Parameters 3 m "m" "kg" l "l" "m" g "g" "m/s^2"
+    }
+    ::hodograph::generated::record_in_lanes! {
+        Parameters 3 m l g
     }
     ::hodograph::generated::log! {
         Parameters "Parameters {{ m: {}, l: {}, g: {} }}" m l g
@@ -86,6 +89,9 @@ pub mod pendulum {
     ::hodograph::generated::record! {
         Coordinates 1 q1 "q1" "rad"
     }
+    ::hodograph::generated::record_in_lanes! {
+        Coordinates 1 q1
+    }
     ::hodograph::generated::log! {
         Coordinates "Coordinates {{ q1: {} }}" q1
     }
@@ -142,6 +148,9 @@ pub mod pendulum {
     ::hodograph::generated::record! {
         Speeds 1 u1 "u1" "rad/s"
     }
+    ::hodograph::generated::record_in_lanes! {
+        Speeds 1 u1
+    }
     ::hodograph::generated::log! {
         Speeds "Speeds {{ u1: {} }}" u1
     }
@@ -197,6 +206,9 @@ pub mod pendulum {
     }
     ::hodograph::generated::record! {
         Inputs 1 tau "tau" "N*m"
+    }
+    ::hodograph::generated::record_in_lanes! {
+        Inputs 1 tau
     }
     ::hodograph::generated::log! {
         Inputs "Inputs {{ tau: {} }}" tau
@@ -352,6 +364,9 @@ pub mod pendulum {
             Self { parameters, hoisted }
         }
     }
+    ::hodograph::generated::in_lanes! {
+        Pendulum parameters
+    }
     /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
     #[derive(Clone, Copy, Debug, PartialEq)]
     #[must_use]
@@ -425,7 +440,7 @@ pub mod pendulum {
         /// derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the contact basis (normal, first, second); if there is no derivative `outcome.non_smoothness` says why
         pub outcome: ::hodograph::ImpactDerivative<T>,
     }
-    impl<T: ::hodograph::Scalar> Pendulum<T> {
+    impl<T: ::hodograph::Number> Pendulum<T> {
         /// Rates q' of the generalised coordinates, in their units per second.
         #[inline]
         pub fn coordinate_rates(
@@ -834,6 +849,8 @@ pub mod pendulum {
                 reduced: ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
             })
         }
+    }
+    impl<T: ::hodograph::Scalar> Pendulum<T> {
         /// Solves the collision at `TipWall` (the bob strikes the wall).
         ///
         /// The coordinates do not change; the speeds change by M^-1 V^T I (12a), I being the impulse.

@@ -11,7 +11,7 @@
 /// A method of [`Pendulum`] that returns a `Result` fails where the state is singular or a result is not finite (`StateError`). A method that solves a collision also fails where it has no outcome (`CollisionError`); a method for the force of a closed contact fails where no finite force satisfies Coulomb's law (`ClosedContactError`).
 #[allow(non_snake_case, dead_code, unused_variables, clippy::all)]
 pub mod pendulum_in_parts {
-    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_6;
+    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_7;
     /// Parameters of the mechanism.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Parameters<T = f64> {
@@ -27,6 +27,9 @@ pub mod pendulum_in_parts {
     }
     ::hodograph::generated::record! {
         Parameters 3 m "m" "kg" l "l" "m" g "g" "m/s^2"
+    }
+    ::hodograph::generated::record_in_lanes! {
+        Parameters 3 m l g
     }
     ::hodograph::generated::log! {
         Parameters "Parameters {{ m: {}, l: {}, g: {} }}" m l g
@@ -86,6 +89,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::record! {
         Coordinates 1 q1 "q1" "rad"
     }
+    ::hodograph::generated::record_in_lanes! {
+        Coordinates 1 q1
+    }
     ::hodograph::generated::log! {
         Coordinates "Coordinates {{ q1: {} }}" q1
     }
@@ -142,6 +148,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::record! {
         Speeds 1 u1 "u1" "rad/s"
     }
+    ::hodograph::generated::record_in_lanes! {
+        Speeds 1 u1
+    }
     ::hodograph::generated::log! {
         Speeds "Speeds {{ u1: {} }}" u1
     }
@@ -197,6 +206,9 @@ pub mod pendulum_in_parts {
     }
     ::hodograph::generated::record! {
         Inputs 1 tau "tau" "N*m"
+    }
+    ::hodograph::generated::record_in_lanes! {
+        Inputs 1 tau
     }
     ::hodograph::generated::log! {
         Inputs "Inputs {{ tau: {} }}" tau
@@ -352,6 +364,9 @@ pub mod pendulum_in_parts {
             Self { parameters, hoisted }
         }
     }
+    ::hodograph::generated::in_lanes! {
+        Pendulum parameters
+    }
     /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
     #[derive(Clone, Copy, Debug, PartialEq)]
     #[must_use]
@@ -425,7 +440,7 @@ pub mod pendulum_in_parts {
         /// derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the contact basis (normal, first, second); if there is no derivative `outcome.non_smoothness` says why
         pub outcome: ::hodograph::ImpactDerivative<T>,
     }
-    impl<T: ::hodograph::Scalar> Pendulum<T> {
+    impl<T: ::hodograph::Number> Pendulum<T> {
         /// Rates q' of the generalised coordinates, in their units per second.
         #[inline]
         pub fn coordinate_rates(
@@ -552,7 +567,7 @@ pub mod pendulum_in_parts {
             let v14 = self.hoisted[1];
             let v5 = inputs.tau;
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 1]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 1]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6;
@@ -560,7 +575,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 1];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 1],
                 gives: &mut [T; 1],
@@ -572,7 +587,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
+            fn part_2<T: ::hodograph::Number>(
                 taken: &[T; 2],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -637,7 +652,7 @@ pub mod pendulum_in_parts {
             let v5 = inputs.tau;
             let v16 = self.hoisted[2];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 1]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 1]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6;
@@ -645,7 +660,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 1];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 1],
                 gives: &mut [T; 1],
@@ -657,7 +672,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
+            fn part_2<T: ::hodograph::Number>(
                 taken: &[T; 2],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -671,7 +686,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v14, v5], &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_2: &[T; 1],
                 gives: &mut [T; 1],
@@ -701,7 +716,7 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v20 = self.hoisted[3];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v20 = taken[0];
                 let v4 = taken[1];
                 let v21 = v4 * v20;
@@ -710,7 +725,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 1];
             part_0(&[v20, v4], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_0: &[T; 1],
                 gives: &mut [T; 1],
@@ -743,7 +758,7 @@ pub mod pendulum_in_parts {
             let v3 = q.q1;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
@@ -752,7 +767,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -764,7 +779,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
+            fn part_2<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -777,7 +792,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v1], &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -789,7 +804,7 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_0, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(
+            fn part_4<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_3: &[T; 1],
                 gives: &mut [T; 1],
@@ -802,7 +817,7 @@ pub mod pendulum_in_parts {
             let mut of_part_4 = [T::one(); 1];
             part_4(&[v1], &of_part_3, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(
+            fn part_5<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_4: &[T; 1],
                 gives: &mut [T; 1],
@@ -839,7 +854,7 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
@@ -848,7 +863,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -860,7 +875,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
+            fn part_2<T: ::hodograph::Number>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v1 = taken[0];
                 let v4 = taken[1];
                 let v25 = v1 * v4;
@@ -869,7 +884,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v1, v4], &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_2: &[T; 1],
@@ -883,7 +898,7 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(
+            fn part_4<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_3: &[T; 1],
                 gives: &mut [T; 1],
@@ -895,7 +910,7 @@ pub mod pendulum_in_parts {
             let mut of_part_4 = [T::one(); 1];
             part_4(&[], &of_part_3, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(
+            fn part_5<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -907,7 +922,7 @@ pub mod pendulum_in_parts {
             let mut of_part_5 = [T::one(); 1];
             part_5(&[], &of_part_0, &mut of_part_5);
             #[inline(never)]
-            fn part_6<T: ::hodograph::Scalar>(
+            fn part_6<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_2: &[T; 1],
                 of_part_5: &[T; 1],
@@ -969,7 +984,7 @@ pub mod pendulum_in_parts {
             let v34 = self.hoisted[5];
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
@@ -978,7 +993,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -990,7 +1005,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
+            fn part_2<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -1003,7 +1018,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v34], &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_2: &[T; 1],
                 gives: &mut [T; 1],
@@ -1015,7 +1030,7 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(
+            fn part_4<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1027,7 +1042,7 @@ pub mod pendulum_in_parts {
             let mut of_part_4 = [T::one(); 1];
             part_4(&[], &of_part_0, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(
+            fn part_5<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_4: &[T; 1],
                 gives: &mut [T; 1],
@@ -1081,7 +1096,7 @@ pub mod pendulum_in_parts {
             let v28 = self.hoisted[4];
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
@@ -1090,7 +1105,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1102,7 +1117,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
+            fn part_2<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -1115,7 +1130,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v28], &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_2: &[T; 1],
@@ -1129,7 +1144,7 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(
+            fn part_4<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1141,7 +1156,7 @@ pub mod pendulum_in_parts {
             let mut of_part_4 = [T::one(); 1];
             part_4(&[], &of_part_0, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(
+            fn part_5<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_4: &[T; 1],
                 gives: &mut [T; 1],
@@ -1154,7 +1169,7 @@ pub mod pendulum_in_parts {
             let mut of_part_5 = [T::one(); 1];
             part_5(&[v28], &of_part_4, &mut of_part_5);
             #[inline(never)]
-            fn part_6<T: ::hodograph::Scalar>(
+            fn part_6<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_5: &[T; 1],
@@ -1168,7 +1183,7 @@ pub mod pendulum_in_parts {
             let mut of_part_6 = [T::one(); 1];
             part_6(&[], &of_part_1, &of_part_5, &mut of_part_6);
             #[inline(never)]
-            fn part_7<T: ::hodograph::Scalar>(
+            fn part_7<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_6: &[T; 1],
                 gives: &mut [T; 1],
@@ -1180,7 +1195,7 @@ pub mod pendulum_in_parts {
             let mut of_part_7 = [T::one(); 1];
             part_7(&[], &of_part_6, &mut of_part_7);
             #[inline(never)]
-            fn part_8<T: ::hodograph::Scalar>(
+            fn part_8<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_4: &[T; 1],
                 of_part_5: &[T; 1],
@@ -1223,7 +1238,7 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v28 = self.hoisted[4];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
@@ -1232,7 +1247,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1244,7 +1259,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
+            fn part_2<T: ::hodograph::Number>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v1 = taken[0];
                 let v4 = taken[1];
                 let v25 = v1 * v4;
@@ -1253,7 +1268,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v1, v4], &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_2: &[T; 1],
@@ -1267,7 +1282,7 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(
+            fn part_4<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_3: &[T; 1],
                 gives: &mut [T; 1],
@@ -1279,7 +1294,7 @@ pub mod pendulum_in_parts {
             let mut of_part_4 = [T::one(); 1];
             part_4(&[], &of_part_3, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(
+            fn part_5<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1291,7 +1306,7 @@ pub mod pendulum_in_parts {
             let mut of_part_5 = [T::one(); 1];
             part_5(&[], &of_part_0, &mut of_part_5);
             #[inline(never)]
-            fn part_6<T: ::hodograph::Scalar>(
+            fn part_6<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_2: &[T; 1],
                 of_part_5: &[T; 1],
@@ -1305,7 +1320,7 @@ pub mod pendulum_in_parts {
             let mut of_part_6 = [T::one(); 1];
             part_6(&[], &of_part_2, &of_part_5, &mut of_part_6);
             #[inline(never)]
-            fn part_7<T: ::hodograph::Scalar>(
+            fn part_7<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -1318,7 +1333,7 @@ pub mod pendulum_in_parts {
             let mut of_part_7 = [T::one(); 1];
             part_7(&[v28], &of_part_1, &mut of_part_7);
             #[inline(never)]
-            fn part_8<T: ::hodograph::Scalar>(
+            fn part_8<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_7: &[T; 1],
@@ -1332,7 +1347,7 @@ pub mod pendulum_in_parts {
             let mut of_part_8 = [T::one(); 1];
             part_8(&[], &of_part_1, &of_part_7, &mut of_part_8);
             #[inline(never)]
-            fn part_9<T: ::hodograph::Scalar>(
+            fn part_9<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_5: &[T; 1],
                 gives: &mut [T; 1],
@@ -1345,7 +1360,7 @@ pub mod pendulum_in_parts {
             let mut of_part_9 = [T::one(); 1];
             part_9(&[v28], &of_part_5, &mut of_part_9);
             #[inline(never)]
-            fn part_10<T: ::hodograph::Scalar>(
+            fn part_10<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_9: &[T; 1],
@@ -1359,7 +1374,7 @@ pub mod pendulum_in_parts {
             let mut of_part_10 = [T::one(); 1];
             part_10(&[], &of_part_1, &of_part_9, &mut of_part_10);
             #[inline(never)]
-            fn part_11<T: ::hodograph::Scalar>(
+            fn part_11<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_10: &[T; 1],
                 gives: &mut [T; 1],
@@ -1371,7 +1386,7 @@ pub mod pendulum_in_parts {
             let mut of_part_11 = [T::one(); 1];
             part_11(&[], &of_part_10, &mut of_part_11);
             #[inline(never)]
-            fn part_12<T: ::hodograph::Scalar>(
+            fn part_12<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_5: &[T; 1],
                 of_part_9: &[T; 1],
@@ -1403,6 +1418,8 @@ pub mod pendulum_in_parts {
                 reduced: ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
             })
         }
+    }
+    impl<T: ::hodograph::Scalar> Pendulum<T> {
         /// Solves the collision at `TipWall` (the bob strikes the wall).
         ///
         /// The coordinates do not change; the speeds change by M^-1 V^T I (12a), I being the impulse.
@@ -1462,7 +1479,7 @@ pub mod pendulum_in_parts {
             let v28 = self.hoisted[4];
             let v34 = self.hoisted[5];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+            fn part_0<T: ::hodograph::Number>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
@@ -1471,7 +1488,7 @@ pub mod pendulum_in_parts {
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(
+            fn part_1<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1483,7 +1500,7 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
+            fn part_2<T: ::hodograph::Number>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v1 = taken[0];
                 let v4 = taken[1];
                 let v25 = v1 * v4;
@@ -1492,7 +1509,7 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v1, v4], &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(
+            fn part_3<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_2: &[T; 1],
@@ -1506,7 +1523,7 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(
+            fn part_4<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_3: &[T; 1],
                 gives: &mut [T; 1],
@@ -1518,7 +1535,7 @@ pub mod pendulum_in_parts {
             let mut of_part_4 = [T::one(); 1];
             part_4(&[], &of_part_3, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(
+            fn part_5<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
@@ -1530,7 +1547,7 @@ pub mod pendulum_in_parts {
             let mut of_part_5 = [T::one(); 1];
             part_5(&[], &of_part_0, &mut of_part_5);
             #[inline(never)]
-            fn part_6<T: ::hodograph::Scalar>(
+            fn part_6<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_2: &[T; 1],
                 of_part_5: &[T; 1],
@@ -1544,7 +1561,7 @@ pub mod pendulum_in_parts {
             let mut of_part_6 = [T::one(); 1];
             part_6(&[], &of_part_2, &of_part_5, &mut of_part_6);
             #[inline(never)]
-            fn part_7<T: ::hodograph::Scalar>(
+            fn part_7<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -1557,7 +1574,7 @@ pub mod pendulum_in_parts {
             let mut of_part_7 = [T::one(); 1];
             part_7(&[v28], &of_part_1, &mut of_part_7);
             #[inline(never)]
-            fn part_8<T: ::hodograph::Scalar>(
+            fn part_8<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_7: &[T; 1],
@@ -1571,7 +1588,7 @@ pub mod pendulum_in_parts {
             let mut of_part_8 = [T::one(); 1];
             part_8(&[], &of_part_1, &of_part_7, &mut of_part_8);
             #[inline(never)]
-            fn part_9<T: ::hodograph::Scalar>(
+            fn part_9<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_5: &[T; 1],
                 gives: &mut [T; 1],
@@ -1584,7 +1601,7 @@ pub mod pendulum_in_parts {
             let mut of_part_9 = [T::one(); 1];
             part_9(&[v28], &of_part_5, &mut of_part_9);
             #[inline(never)]
-            fn part_10<T: ::hodograph::Scalar>(
+            fn part_10<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_1: &[T; 1],
                 of_part_9: &[T; 1],
@@ -1598,7 +1615,7 @@ pub mod pendulum_in_parts {
             let mut of_part_10 = [T::one(); 1];
             part_10(&[], &of_part_1, &of_part_9, &mut of_part_10);
             #[inline(never)]
-            fn part_11<T: ::hodograph::Scalar>(
+            fn part_11<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_10: &[T; 1],
                 gives: &mut [T; 1],
@@ -1610,7 +1627,7 @@ pub mod pendulum_in_parts {
             let mut of_part_11 = [T::one(); 1];
             part_11(&[], &of_part_10, &mut of_part_11);
             #[inline(never)]
-            fn part_12<T: ::hodograph::Scalar>(
+            fn part_12<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_5: &[T; 1],
                 of_part_9: &[T; 1],
@@ -1624,7 +1641,7 @@ pub mod pendulum_in_parts {
             let mut of_part_12 = [T::one(); 1];
             part_12(&[], &of_part_5, &of_part_9, &mut of_part_12);
             #[inline(never)]
-            fn part_13<T: ::hodograph::Scalar>(
+            fn part_13<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_1: &[T; 1],
                 gives: &mut [T; 1],
@@ -1637,7 +1654,7 @@ pub mod pendulum_in_parts {
             let mut of_part_13 = [T::one(); 1];
             part_13(&[v34], &of_part_1, &mut of_part_13);
             #[inline(never)]
-            fn part_14<T: ::hodograph::Scalar>(
+            fn part_14<T: ::hodograph::Number>(
                 taken: &[T; 0],
                 of_part_13: &[T; 1],
                 gives: &mut [T; 1],
@@ -1649,7 +1666,7 @@ pub mod pendulum_in_parts {
             let mut of_part_14 = [T::one(); 1];
             part_14(&[], &of_part_13, &mut of_part_14);
             #[inline(never)]
-            fn part_15<T: ::hodograph::Scalar>(
+            fn part_15<T: ::hodograph::Number>(
                 taken: &[T; 1],
                 of_part_5: &[T; 1],
                 gives: &mut [T; 1],

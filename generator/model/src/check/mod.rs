@@ -10,6 +10,7 @@ pub mod coupled;
 mod exact;
 mod finite;
 mod gaps;
+mod hulls;
 mod independent_constraints;
 mod loads;
 mod loops;
@@ -117,7 +118,7 @@ pub fn names(tokens: &[Token]) -> (Tree, Symbols) {
     if model::too_many(&tree).is_some() {
         return (tree, Symbols::default());
     }
-    let symbols = model::lower(&tree, diagnostics).symbols;
+    let symbols = model::lower(&tree, &hulls::hulls(&tree), diagnostics).symbols;
     (tree, symbols)
 }
 
@@ -145,7 +146,7 @@ fn analysed(source: &Source) -> Analysis {
     } else if unread {
         (None, diagnostics)
     } else {
-        let lowered = model::lower(&tree, diagnostics);
+        let lowered = model::lower(&tree, &hulls::hulls(&tree), diagnostics);
         symbols = lowered.symbols;
         (Some((lowered.mechanism, lowered.readable)), lowered.diagnostics)
     };

@@ -18,15 +18,17 @@ const NOT_FINITE: &str = "masses times lengths are not finite at any state that 
 const IN_RANGE: &str =
     "give masses, lengths and forces in other units, or check their exponents: numbers end at 1.8e308";
 /// Mechanisms of more parts than this are not looked at: it would take too long.
-pub const MOST_PARTS: usize = 2000;
+pub const MOST_PARTS: usize = 8000;
 
 /// Mistakes that show in numbers, in what could be read of the mechanism; `name` is where it is named.
 pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
     let parts = parts(m);
     if parts > MOST_PARTS {
         let message = format!("a mechanism of {parts} parts is too large for numerical checks");
-        let help = "mistakes that only evaluation shows (impossible inertias, singular constraints, normals that are not unit vectors) are not \
-                    found in more than 2000 points, frames, definitions, bodies and contacts";
+        let help = format!(
+            "mistakes that only evaluation shows (impossible inertias, singular constraints, normals that are not unit vectors) are not \
+             found in more than {MOST_PARTS} points, frames, definitions, bodies and contacts"
+        );
         return vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
     }
     with_room(|| look(m, readable, name))

@@ -24,9 +24,11 @@ pub(super) const TABLE: &[Explanation] = &[
         code: PAIR,
         text: "Contacts are compiled between pairs of shapes whose nearest points have a closed form: everything \
             convex on a plane, a sphere on (or in) a sphere, capsule, cylinder or box, and on a disc or torus, \
-            a capsule on a capsule or a box, a box on a box, the vertices of a box or polytope on a surface, and, in a mechanism \
-            that moves in a plane, a capsule or a rectangle on a rectangle. What strikes stands first. Other pairs whose edges and faces \
-            end are not compiled: place spheres at the corners that meet, or state points, normals and gaps.",
+            a capsule on a capsule or a box, boxes and polytopes on each other, a sphere on a polytope, the vertices of a box or polytope on a \
+            surface, and, in a mechanism that moves in a plane, a capsule or a rectangle on a rectangle. What strikes stands first. The faces of a \
+            polytope are those of the convex hull of its points, at the values that the model gives: each point must be a vertex, not all may be in \
+            one plane, and a pair may have 256 contacts at most. Other pairs whose edges and faces end are not compiled: place spheres at the \
+            corners that meet, or state points, normals and gaps.",
         wrong: Some(
             "shapes { Bar { of: Rod, cylinder: [l/20, l], axis: B.y }, Post { at: O + l*N.x, box: [l/4, l, l] } }\n\
             contacts { tip { Bar on Post } }",

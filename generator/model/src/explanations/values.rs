@@ -135,7 +135,7 @@ pub(super) const TABLE: &[Explanation] = &[
         code: UNCHECKED,
         text: "Some mistakes are found only by evaluating the model at some states: inertias that no body \
             has, constraints that determine nothing, normals that are not unit vectors. They are not looked \
-            for in a mechanism of more than 2000 points, frames, definitions, bodies and contacts together, \
+            for in a mechanism of more than 8000 points, frames, definitions, bodies and contacts together, \
             because it would take too long.",
         wrong: None,
         right: None,

@@ -1,10 +1,11 @@
 //! Gives a model its meaning: resolves names and checks dimensions.
 
 mod dependency_order;
+pub mod hulls;
 mod lower;
 pub mod mechanism;
 pub mod names;
-mod pairs;
+pub(crate) mod pairs;
 mod provenance;
 mod readable;
 pub mod symbols;

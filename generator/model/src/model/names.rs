@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::hulls::Hulls;
 use super::pairs;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::rust_names::{is_keyword, is_value, snake_case};
@@ -63,7 +64,7 @@ pub struct Names {
 
 impl Names {
     /// Collects the declarations of a model; reports names that cannot be declared.
-    pub fn collect(tree: &Tree, diagnostics: &mut Vec<Diagnostic>) -> Names {
+    pub fn collect(tree: &Tree, hulls: &Hulls, diagnostics: &mut Vec<Diagnostic>) -> Names {
         let mut names = Names { symbols: HashMap::new(), ambiguous: HashSet::new(), order: Vec::new() };
         for (text, symbol) in
             [("N", Symbol::Frame(0)), ("O", Symbol::Point(0)), ("time", Symbol::Time), ("pi", Symbol::Pi)]
@@ -107,7 +108,7 @@ impl Names {
         for (i, shape) in tree.shapes.iter().enumerate() {
             add(&shape.name, Symbol::Shape(i));
         }
-        let contacts = pairs::names(tree);
+        let contacts = pairs::names(tree, hulls);
         for (i, (contact, _)) in contacts.iter().enumerate() {
             add(contact, Symbol::Contact(i));
         }

@@ -12,7 +12,7 @@ use crate::words;
 impl Lowering<'_> {
     pub(super) fn contacts(&mut self) {
         let tree = self.tree;
-        let names = pairs::names(tree);
+        let names = pairs::names(tree, self.hulls);
         for (i, record) in tree.contacts.iter().enumerate() {
             if let Some(pair) = pairs::pair(record) {
                 let own = names.iter().filter(|(_, of)| *of == i).map(|(name, _)| name);

@@ -29,6 +29,7 @@ mod turning;
 use std::collections::HashSet;
 
 use super::dependency_order::{Item, Stated, order};
+use super::hulls::Hulls;
 use super::mechanism::*;
 use super::names::Names;
 use super::readable::Readable;
@@ -40,16 +41,16 @@ use crate::syntax::tree::{Declaration, Tree};
 use crate::syntax::units::Unit;
 use balances::Balances;
 
-/// Lowers a tree. The mechanism is complete only if no error was reported; what of it can be relied on
+/// Lowers a tree, of whose polytopes the hulls are known where they are needed. The mechanism is complete only if no error was reported; what of it can be relied on
 /// otherwise is said beside it.
-pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> Lowered {
+pub fn lower(tree: &Tree, hulls: &Hulls, diagnostics: Vec<Diagnostic>) -> Lowered {
     let mut diagnostics = diagnostics;
     if let Some(error) = tree.name.as_ref().and_then(super::names::reserved) {
         diagnostics.push(error);
     }
-    let names = Names::collect(tree, &mut diagnostics);
+    let names = Names::collect(tree, hulls, &mut diagnostics);
     let plan = order(tree, &names, &mut diagnostics);
-    let mut lowering = Lowering::new(tree, names, diagnostics);
+    let mut lowering = Lowering::new(tree, hulls, names, diagnostics);
     lowering.quantities();
     lowering.declarations();
     for item in plan.items {
@@ -147,6 +148,8 @@ pub(super) struct PointFacts {
 /// The state of lowering.
 pub(super) struct Lowering<'a> {
     pub tree: &'a Tree,
+    /// the hulls of the polytopes that need them
+    pub hulls: &'a Hulls,
     pub stated: Stated<'a>,
     pub names: Names,
     pub diagnostics: Vec<Diagnostic>,
@@ -175,7 +178,7 @@ pub(super) struct Lowering<'a> {
 }
 
 impl<'a> Lowering<'a> {
-    fn new(tree: &'a Tree, names: Names, diagnostics: Vec<Diagnostic>) -> Self {
+    fn new(tree: &'a Tree, hulls: &'a Hulls, names: Names, diagnostics: Vec<Diagnostic>) -> Self {
         let out = Mechanism {
             name: tree.name.as_ref().map_or(String::new(), |name| name.text.clone()),
             docs: tree.docs.clone(),
@@ -197,6 +200,7 @@ impl<'a> Lowering<'a> {
         };
         Lowering {
             tree,
+            hulls,
             stated: Stated::of(tree),
             names,
             diagnostics,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::compile::Columns;
 use super::lanes::{LANES, Slot};
-use super::run::Scratch;
+use super::run::{Scratch, Task};
 use super::table::Table;
 use crate::interpret::prepared::Failed;
 
@@ -22,7 +22,7 @@ pub struct Block<'a> {
 impl<'a> Block<'a> {
     /// A result for all states of the block. Entries of states that fail have no meaning.
     pub fn column(&self, result: usize) -> &'a [f64] {
-        self.results.get(result).and_then(|slot| slot.as_flattened().get(..self.count)).unwrap_or(&[])
+        self.results.get(result).and_then(|slot| slot.0.as_flattened().get(..self.count)).unwrap_or(&[])
     }
 
     /// For each state of the block, why it has no results.
@@ -39,7 +39,7 @@ impl Columns {
         let end = rows.end.min(table.rows);
         for first in (rows.start..end).step_by(LANES) {
             let count = (end - first).min(LANES);
-            self.run(table, first, count, &mut scratch);
+            Task { columns: self, table, first, count, scratch: &mut scratch }.run();
             with(Block { first, count, results: &scratch.results, failures: &scratch.failures });
         }
     }

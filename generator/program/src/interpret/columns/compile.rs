@@ -58,10 +58,16 @@ pub enum Code {
     NotSmallUS,
 }
 
+/// Steps with the same operation that follow each other.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub code: Code,
+    pub steps: Vec<Step>,
+}
+
 /// A step. Its result goes to slot `to`; sine and cosine go to `to` and `b`.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    pub code: Code,
     pub to: u32,
     pub a: u32,
     pub b: u32,
@@ -71,7 +77,7 @@ pub struct Step {
 /// Some quantities of a program, prepared for evaluation at many states with the same parameters.
 #[derive(Clone, Debug)]
 pub struct Columns {
-    pub(super) steps: Vec<Step>,
+    pub(super) runs: Vec<Run>,
     /// number of slots that the steps need
     pub(super) slots: usize,
     /// values that are the same for all states: the value of the program, and its number
@@ -191,8 +197,8 @@ fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) ->
             !ready
         });
     }
-    let (steps, slots) = with_slots(&grouped(drafts));
-    Columns { steps, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
+    let (runs, slots) = with_slots(&grouped(drafts));
+    Columns { runs, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
 }
 
 impl Draft {
@@ -330,7 +336,7 @@ fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
 }
 
 /// Assigns slots; the slot that became free last is reused first.
-fn with_slots(drafts: &[Draft]) -> (Vec<Step>, usize) {
+fn with_slots(drafts: &[Draft]) -> (Vec<Run>, usize) {
     let mut last: HashMap<Varying, usize> = HashMap::new();
     for (index, draft) in drafts.iter().enumerate() {
         let used = draft.operands.iter().flatten().filter_map(|place| match place {
@@ -342,7 +348,7 @@ fn with_slots(drafts: &[Draft]) -> (Vec<Step>, usize) {
         }
     }
     let (mut held, mut free, mut count) = (HashMap::<Varying, u32>::new(), Vec::new(), 0_u32);
-    let mut steps = Vec::with_capacity(drafts.len());
+    let mut runs: Vec<Run> = Vec::new();
     for (index, draft) in drafts.iter().enumerate() {
         let operands = draft.operands.map(|place| match place {
             Some(Place::Varying(varying)) => held.get(&varying).copied().unwrap_or(0),
@@ -376,13 +382,11 @@ fn with_slots(drafts: &[Draft]) -> (Vec<Step>, usize) {
             }
         }
         let [a, b, c] = operands;
-        steps.push(Step {
-            code: draft.code,
-            to: defined[0].unwrap_or(draft.number),
-            a,
-            b: defined[1].unwrap_or(b),
-            c,
-        });
+        let step = Step { to: defined[0].unwrap_or(draft.number), a, b: defined[1].unwrap_or(b), c };
+        match runs.last_mut().filter(|run| run.code == draft.code) {
+            Some(run) => run.steps.push(step),
+            None => runs.push(Run { code: draft.code, steps: vec![step] }),
+        }
     }
-    (steps, count as usize)
+    (runs, count as usize)
 }

@@ -5,10 +5,11 @@
 //! ```
 //!
 //! A slot holds one number of every state of a block and is used again as soon as nobody reads it, so that a
-//! block stays in a core's own caches. The steps are loops over groups of eight states without branches,
-//! which compilers turn into vector instructions. The bits of a state's results are
-//! those of [`super::Prepared`], whatever states stand beside it and however many there are; a state without
-//! result fails alone.
+//! block stays in a core's own caches. The steps are loops over groups of eight states without branches, which
+//! compilers turn into vector instructions, of which the widest that the processor has are taken. Steps with the
+//! same operation that follow each other are one run: what they do is found out once. The bits of a state's
+//! results are those of [`super::Prepared`], whatever states stand beside it, however many there are and whatever
+//! instructions compute them; a state without result fails alone.
 
 mod batch;
 mod compile;

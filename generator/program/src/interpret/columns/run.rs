@@ -1,6 +1,6 @@
 //! Executes the steps on a block of states.
 
-use super::compile::{Code, Columns, Step};
+use super::compile::{Code, Columns, Run, Step};
 use super::lanes::{InSlot, LANES, Numbers, Operand, Slot, Uniform, WIDTH};
 use super::table::Table;
 use crate::interpret::constants::holds;
@@ -9,6 +9,7 @@ use crate::program::VANISHING;
 use hodograph_model::arithmetic::{call, call2, mul_add};
 
 /// The work space of a batch.
+#[derive(Debug)]
 pub struct Scratch {
     slots: Vec<Slot>,
     uniforms: Vec<f64>,
@@ -24,14 +25,14 @@ pub struct Scratch {
 
 /// No check has failed.
 const NONE: (u32, bool) = (u32::MAX, false);
-const ZERO: Slot = [[0.0; WIDTH]; LANES / WIDTH];
+const ZERO: Slot = Slot::of(0.0);
 
 impl Scratch {
     pub fn new(columns: &Columns) -> Self {
         let uniforms: Vec<f64> = columns.uniforms.iter().map(|(_, number)| *number).collect();
         let mut results = vec![ZERO; columns.len];
         for &(place, uniform) in &columns.uniform_results {
-            results[place] = [[uniforms[uniform as usize]; WIDTH]; LANES / WIDTH];
+            results[place] = Slot::of(uniforms[uniform as usize]);
         }
         Scratch {
             slots: vec![ZERO; columns.slots],
@@ -44,62 +45,103 @@ impl Scratch {
     }
 }
 
-impl Columns {
-    /// Evaluates the states of a block.
-    pub(super) fn run(&self, table: &Table<'_>, first: usize, count: usize, scratch: &mut Scratch) {
+/// The states of a block that are evaluated.
+#[derive(Debug)]
+pub(super) struct Task<'a> {
+    pub(super) columns: &'a Columns,
+    pub(super) table: &'a Table<'a>,
+    pub(super) first: usize,
+    pub(super) count: usize,
+    pub(super) scratch: &'a mut Scratch,
+}
+
+/// Compiled once for each set of vector instructions; the bits do not depend on them.
+#[cfg(target_arch = "x86_64")]
+impl pulp::WithSimd for Task<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.execute();
+    }
+}
+
+impl Task<'_> {
+    /// Evaluates the states by the widest vector instructions that the processor has.
+    pub(super) fn run(self) {
+        #[cfg(target_arch = "x86_64")]
+        pulp::Arch::new().dispatch(self);
+        #[cfg(not(target_arch = "x86_64"))]
+        self.execute();
+    }
+
+    /// Evaluates the states by the instructions for which the caller is compiled.
+    #[inline(always)]
+    pub(super) fn execute(self) {
+        let Task { columns, table, first, count, scratch } = self;
         scratch.failed = [NONE; LANES];
         scratch.finite = ZERO;
-        let parts = count.div_ceil(WIDTH);
-        for step in &self.steps {
-            let Step { code, to, a, b, .. } = *step;
-            match code {
-                Code::Load(input) => table.gather(input, first, count, &mut scratch.slots[to as usize]),
-                Code::Result => {
-                    let result = scratch.slots[a as usize];
-                    scratch.results[to as usize] = result;
-                    for (sum, numbers) in scratch.finite.iter_mut().zip(&result) {
-                        for (sum, &number) in sum.iter_mut().zip(numbers) {
-                            *sum += number * 0.0;
-                        }
+        for Run { code, steps } in &columns.runs {
+            match *code {
+                Code::Load(input) => {
+                    for step in steps {
+                        table.gather(input, first, count, &mut scratch.slots[step.to as usize]);
                     }
                 }
-                Code::NotZeroS => scratch.check(to, InSlot(a), None::<InSlot>),
-                Code::NotSmallSS => scratch.check(to, InSlot(a), Some(InSlot(b))),
-                Code::NotSmallSU => scratch.check(to, InSlot(a), Some(Uniform(b))),
-                Code::NotSmallUS => scratch.check(to, Uniform(a), Some(InSlot(b))),
-                _ => compute(step, Numbers { slots: &mut scratch.slots, uniforms: &scratch.uniforms, parts }),
+                Code::Result => steps.iter().for_each(|step| scratch.keep(step)),
+                Code::NotZeroS => scratch.check::<InSlot, InSlot>(steps, false),
+                Code::NotSmallSS => scratch.check::<InSlot, InSlot>(steps, true),
+                Code::NotSmallSU => scratch.check::<InSlot, Uniform>(steps, true),
+                Code::NotSmallUS => scratch.check::<Uniform, InSlot>(steps, true),
+                code => {
+                    compute(code, steps, Numbers { slots: &mut scratch.slots, uniforms: &scratch.uniforms })
+                }
             }
         }
         for (lane, failure) in scratch.failures.iter_mut().enumerate() {
             let (check, singular) = scratch.failed[lane];
-            *failure = match self.guards.get(check as usize) {
+            *failure = match columns.guards.get(check as usize) {
                 Some(&guard) if singular => Some(Failed::Singular(guard)),
                 Some(_) => Some(Failed::NotFinite),
-                None => (scratch.finite.as_flattened()[lane] != 0.0).then_some(Failed::NotFinite),
+                None => (scratch.finite.0.as_flattened()[lane] != 0.0).then_some(Failed::NotFinite),
             };
         }
     }
 }
 
 impl Scratch {
-    /// Records the states in which a value vanishes relative to a scale. The failure that is reported is the
-    /// one that [`crate::interpret::Prepared`] finds first.
+    /// Keeps a result.
     #[inline(always)]
-    fn check<A: Operand, B: Operand>(&mut self, check: u32, value: A, scale: Option<B>) {
-        let (mut values, mut bounds) = (ZERO, ZERO);
-        for part in 0..LANES / WIDTH {
-            values[part] = value.part(&self.slots, &self.uniforms, part);
-            if let Some(scale) = scale {
-                bounds[part] =
-                    scale.part(&self.slots, &self.uniforms, part).map(|scale| VANISHING * scale.abs());
+    fn keep(&mut self, step: &Step) {
+        let result = self.slots[step.a as usize];
+        self.results[step.to as usize] = result;
+        for (sum, numbers) in self.finite.0.iter_mut().zip(&result.0) {
+            for (sum, &number) in sum.iter_mut().zip(numbers) {
+                *sum += number * 0.0;
             }
         }
-        let pairs = || values.as_flattened().iter().zip(bounds.as_flattened());
-        let above = pairs().fold(true, |above, (value, bound)| above & (value.abs() > *bound));
-        if !above {
-            for (failed, (&value, &bound)) in self.failed.iter_mut().zip(pairs()) {
-                if check < failed.0 && !holds(value, bound) {
-                    *failed = (check, value.is_finite() && bound.is_finite());
+    }
+
+    /// Records the states in which values vanish, relative to scales if there are any. The failure that is
+    /// reported is the one that [`crate::interpret::Prepared`] finds first.
+    #[inline(always)]
+    fn check<A: Operand, B: Operand>(&mut self, steps: &[Step], scaled: bool) {
+        for step in steps {
+            let (mut values, mut bounds) = (ZERO, ZERO);
+            for part in 0..LANES / WIDTH {
+                values.0[part] = A::at(step.a).part(&self.slots, &self.uniforms, part);
+                if scaled {
+                    let scale = B::at(step.b).part(&self.slots, &self.uniforms, part);
+                    bounds.0[part] = scale.map(|scale| VANISHING * scale.abs());
+                }
+            }
+            let pairs = || values.0.as_flattened().iter().zip(bounds.0.as_flattened());
+            let above = pairs().fold(true, |above, (value, bound)| above & (value.abs() > *bound));
+            if !above {
+                for (failed, (&value, &bound)) in self.failed.iter_mut().zip(pairs()) {
+                    if step.to < failed.0 && !holds(value, bound) {
+                        *failed = (step.to, value.is_finite() && bound.is_finite());
+                    }
                 }
             }
         }
@@ -108,11 +150,9 @@ impl Scratch {
 
 /// Executes an operation; it agrees with [`crate::program::operate`] in doubles.
 #[inline(always)]
-fn compute(step: &Step, mut on: Numbers<'_>) {
+fn compute(code: Code, steps: &[Step], mut on: Numbers<'_>) {
     use Code::*;
-    let Step { code, to, a, b, c } = *step;
-    let (sa, sb, sc) = (InSlot(a), InSlot(b), InSlot(c));
-    let (ua, ub, uc) = (Uniform(a), Uniform(b), Uniform(c));
+    use {InSlot as S, Uniform as U};
     let add = |a: f64, b: f64| a + b;
     let sub = |a: f64, b: f64| a - b;
     let mul = |a: f64, b: f64| a * b;
@@ -120,38 +160,38 @@ fn compute(step: &Step, mut on: Numbers<'_>) {
     let mul_sub = |a: f64, b: f64, c: f64| mul_add(a, b, -c);
     let neg_mul_add = |a: f64, b: f64, c: f64| mul_add(-a, b, c);
     match code {
-        Neg => on.one(to, sa, |a| -a),
-        Recip => on.one(to, sa, |a| 1.0 / a),
-        SineCosine => on.sine_cosine(to, b, a),
-        AddSS => on.two(to, sa, sb, add),
-        AddSU => on.two(to, sa, ub, add),
-        SubSS => on.two(to, sa, sb, sub),
-        SubSU => on.two(to, sa, ub, sub),
-        SubUS => on.two(to, ua, sb, sub),
-        MulSS => on.two(to, sa, sb, mul),
-        MulSU => on.two(to, sa, ub, mul),
-        DivSS => on.two(to, sa, sb, div),
-        DivSU => on.two(to, sa, ub, div),
-        DivUS => on.two(to, ua, sb, div),
-        MulAddSSS => on.three(to, (sa, sb, sc), mul_add),
-        MulAddSUS => on.three(to, (sa, ub, sc), mul_add),
-        MulAddSSU => on.three(to, (sa, sb, uc), mul_add),
-        MulAddSUU => on.three(to, (sa, ub, uc), mul_add),
-        MulAddUUS => on.three(to, (ua, ub, sc), mul_add),
-        MulSubSSS => on.three(to, (sa, sb, sc), mul_sub),
-        MulSubSUS => on.three(to, (sa, ub, sc), mul_sub),
-        MulSubSSU => on.three(to, (sa, sb, uc), mul_sub),
-        MulSubSUU => on.three(to, (sa, ub, uc), mul_sub),
-        MulSubUUS => on.three(to, (ua, ub, sc), mul_sub),
-        NegMulAddSSS => on.three(to, (sa, sb, sc), neg_mul_add),
-        NegMulAddSUS => on.three(to, (sa, ub, sc), neg_mul_add),
-        NegMulAddSSU => on.three(to, (sa, sb, uc), neg_mul_add),
-        NegMulAddSUU => on.three(to, (sa, ub, uc), neg_mul_add),
-        NegMulAddUUS => on.three(to, (ua, ub, sc), neg_mul_add),
-        Call(function) => on.one(to, sa, |a| call(function, a)),
-        CallSS(function) => on.two(to, sa, sb, |a, b| call2(function, a, b)),
-        CallSU(function) => on.two(to, sa, ub, |a, b| call2(function, a, b)),
-        CallUS(function) => on.two(to, ua, sb, |a, b| call2(function, a, b)),
+        Neg => on.one::<S>(steps, |a| -a),
+        Recip => on.one::<S>(steps, |a| 1.0 / a),
+        SineCosine => on.sine_cosine(steps),
+        AddSS => on.two::<S, S>(steps, add),
+        AddSU => on.two::<S, U>(steps, add),
+        SubSS => on.two::<S, S>(steps, sub),
+        SubSU => on.two::<S, U>(steps, sub),
+        SubUS => on.two::<U, S>(steps, sub),
+        MulSS => on.two::<S, S>(steps, mul),
+        MulSU => on.two::<S, U>(steps, mul),
+        DivSS => on.two::<S, S>(steps, div),
+        DivSU => on.two::<S, U>(steps, div),
+        DivUS => on.two::<U, S>(steps, div),
+        MulAddSSS => on.three::<S, S, S>(steps, mul_add),
+        MulAddSUS => on.three::<S, U, S>(steps, mul_add),
+        MulAddSSU => on.three::<S, S, U>(steps, mul_add),
+        MulAddSUU => on.three::<S, U, U>(steps, mul_add),
+        MulAddUUS => on.three::<U, U, S>(steps, mul_add),
+        MulSubSSS => on.three::<S, S, S>(steps, mul_sub),
+        MulSubSUS => on.three::<S, U, S>(steps, mul_sub),
+        MulSubSSU => on.three::<S, S, U>(steps, mul_sub),
+        MulSubSUU => on.three::<S, U, U>(steps, mul_sub),
+        MulSubUUS => on.three::<U, U, S>(steps, mul_sub),
+        NegMulAddSSS => on.three::<S, S, S>(steps, neg_mul_add),
+        NegMulAddSUS => on.three::<S, U, S>(steps, neg_mul_add),
+        NegMulAddSSU => on.three::<S, S, U>(steps, neg_mul_add),
+        NegMulAddSUU => on.three::<S, U, U>(steps, neg_mul_add),
+        NegMulAddUUS => on.three::<U, U, S>(steps, neg_mul_add),
+        Call(function) => on.one::<S>(steps, |a| call(function, a)),
+        CallSS(function) => on.two::<S, S>(steps, |a, b| call2(function, a, b)),
+        CallSU(function) => on.two::<S, U>(steps, |a, b| call2(function, a, b)),
+        CallUS(function) => on.two::<U, S>(steps, |a, b| call2(function, a, b)),
         Load(_) | Result | NotZeroS | NotSmallSS | NotSmallSU | NotSmallUS => {}
     }
 }

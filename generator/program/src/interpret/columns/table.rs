@@ -1,6 +1,6 @@
 //! The states of a batch: a column of numbers for each input of the program.
 
-use super::lanes::{LANES, Slot, WIDTH};
+use super::lanes::{LANES, Slot};
 use crate::program::graph::Input;
 
 /// A borrowed column of numbers: that of row `i` is at `i * stride`.
@@ -32,15 +32,14 @@ impl<'a> Column<'a> {
         self.numbers.get(row * self.stride).copied().unwrap_or(f64::NAN)
     }
 
-    /// Copies the numbers of a block. The last number fills the remaining lanes of the last part.
+    /// Copies the numbers of a block. The last number fills the remaining lanes.
     #[inline]
     pub(super) fn gather(&self, first: usize, count: usize, slot: &mut Slot) {
-        let slot = slot.as_flattened_mut();
+        let slot = slot.0.as_flattened_mut();
         match self.numbers.get(first..first + LANES) {
             Some(numbers) if self.stride == 1 && count == LANES => slot.copy_from_slice(numbers),
             _ => {
-                let parts = count.next_multiple_of(WIDTH);
-                for (lane, place) in slot.iter_mut().enumerate().take(parts) {
+                for (lane, place) in slot.iter_mut().enumerate() {
                     *place = self.get(first + lane.min(count - 1));
                 }
             }
@@ -74,7 +73,7 @@ impl Table<'_> {
             Input::Time => {
                 match &self.time {
                     Some(time) => time.gather(first, count, slot),
-                    None => *slot = [[0.0; WIDTH]; LANES / WIDTH],
+                    None => *slot = Slot::of(0.0),
                 }
                 return;
             }
@@ -87,7 +86,7 @@ impl Table<'_> {
         };
         match list.get(index as usize) {
             Some(column) => column.gather(first, count, slot),
-            None => *slot = [[f64::NAN; WIDTH]; LANES / WIDTH],
+            None => *slot = Slot::of(f64::NAN),
         }
     }
 }

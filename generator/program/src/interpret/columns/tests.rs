@@ -170,3 +170,33 @@ fn missing_columns_and_rows_are_nan() {
     assert!(numbers.iter().all(|number| number.is_nan()));
     assert!(columns.slots() > 0 && !columns.is_empty());
 }
+
+/// The bits do not depend on the instructions that compute them.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn the_same_bits_by_all_instructions_that_the_processor_has() {
+    use super::run::{Scratch, Task};
+    use pulp::x86::{V3, V4};
+    let program = program();
+    let constants = Constants::new(&program, &[1.3]);
+    let columns = Columns::new(&program, &constants, &[Quantity::Forcing]);
+    let [q, u, t] = states(LANES);
+    let column = |numbers| vec![Column::new(numbers)];
+    let (coordinates, speeds) = (column(&q), column(&u));
+    let table = Table { rows: LANES, time: Some(Column::new(&t)), coordinates, speeds, ..Table::default() };
+    let by = |way: &dyn Fn(Task<'_>)| {
+        let mut scratch = Scratch::new(&columns);
+        way(Task { columns: &columns, table: &table, first: 0, count: LANES, scratch: &mut scratch });
+        let numbers = scratch.results.iter().flat_map(|slot| slot.0.as_flattened().to_vec());
+        let bits = numbers.map(|number| if number.is_nan() { None } else { Some(number.to_bits()) });
+        (bits.collect::<Vec<_>>(), scratch.failures)
+    };
+    let plain = by(&|task| task.execute());
+    assert_eq!(by(&|task| task.run()), plain);
+    if let Some(instructions) = V3::try_new() {
+        assert_eq!(by(&|task| instructions.vectorize(|| task.execute())), plain);
+    }
+    if let Some(instructions) = V4::try_new() {
+        assert_eq!(by(&|task| instructions.vectorize(|| task.execute())), plain);
+    }
+}

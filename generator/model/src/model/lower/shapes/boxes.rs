@@ -5,7 +5,7 @@
 //! d. They are definitions without a name in the model, which all contacts of a pair share.
 
 use super::algebra::*;
-use super::faces::{OVERLAPS, gap_of, greatest};
+use super::faces::greatest;
 use super::features::{Touch, axes_of};
 use super::separation::*;
 use super::shared::Shared;
@@ -249,6 +249,16 @@ impl<'s> BoxPair<'s> {
         BoxPair { shapes, at, extent, cosines, boxes, edges, distance, overlap }
     }
 
+    fn ending(
+        &self,
+        point: Anchor,
+        (normal, tangent): (Vector, &Vector),
+        known: (Scalar, Scalar),
+        shared: &mut Shared<'_>,
+    ) -> Touch {
+        ending(point, (normal, tangent.clone()), known, (&self.overlap, &self.extent), shared)
+    }
+
     fn share(&self, (n, d): (i64, i64)) -> Scalar {
         product([ratio(n, d), self.extent.clone()])
     }
@@ -320,7 +330,7 @@ impl<'s> BoxPair<'s> {
         let places = self.places(0, signs, shared);
         let known = self.over(0, &places, shared);
         let face = &self.boxes[1];
-        self.touch(self.vertex(0, signs), (face.outward.clone(), &face.tangent), known, shared)
+        self.ending(self.vertex(0, signs), (face.outward.clone(), &face.tangent), known, shared)
     }
 
     /// The contact of a vertex of the second box: with the matter of the first that is there.
@@ -329,7 +339,7 @@ impl<'s> BoxPair<'s> {
         let known = self.over(1, &places, shared);
         let face = &self.boxes[0];
         let there = self.shapes[0].at.plus(Vector::Components(face.frame, Box::new(places)));
-        self.touch(there, (opposite(&face.outward), &face.tangent), known, shared)
+        self.ending(there, (opposite(&face.outward), &face.tangent), known, shared)
     }
 
     /// The contact of an edge of each box, along these axes.
@@ -384,20 +394,6 @@ impl<'s> BoxPair<'s> {
         (components[i], components[k], components[l]) = (t, to_k, to_l);
         let point = self.shapes[0].at.plus(Vector::Components(first.frame, Box::new(components)));
         let tangent = axis(first.frame, i);
-        self.touch(point, (edges.normal.clone(), &tangent), (height, validity), shared)
-    }
-
-    /// A contact; where it is none, its gap is how far it is from that.
-    fn touch(
-        &self,
-        point: Anchor,
-        (normal, tangent): (Vector, &Vector),
-        (height, validity): (Scalar, Scalar),
-        shared: &mut Shared<'_>,
-    ) -> Touch {
-        let validity = shared.scalar(validity, "validity of a contact");
-        let apart = all([self.overlap.clone(), self.share(OVERLAPS)]);
-        let gap = gap_of(height, opposite_of(validity.clone()), apart);
-        Touch { point, normal, gap, validity: Some(validity), tangent: Some(tangent.clone()) }
+        self.ending(point, (edges.normal.clone(), &tangent), (height, validity), shared)
     }
 }

@@ -96,6 +96,7 @@ fn nearest(solid: &Shape, d: &Vector, at: Span) -> Vector {
             let reach = root(greater(dot(&m, &m), square(r.clone())));
             total([along, scaled(quotient(r.clone(), reach, at), &m)])
         }
+        (Kind::Cone, [r, height]) => nearest_on_cone(d, &a, [r, height], at),
         (Kind::Disc | Kind::Torus, [r, ..]) => {
             let m = total([d.clone(), opposite(&scaled(dot(d, &a), &a))]);
             scaled(r.clone(), &unit(&m, at))
@@ -107,6 +108,44 @@ fn nearest(solid: &Shape, d: &Vector, at: Span) -> Vector {
         }
         _ => Vector::Zero,
     }
+}
+
+/// The square of the part of a cone's radius below which a place counts as on its axis.
+const ON_AXIS: (i64, i64) = (1, 1_000_000_000_000_000_000);
+
+/// The point of a cone that is nearest to a place outside of it: the nearer one of the nearest points of the base and of
+/// the line from rim to apex. A place within the cone is its own nearest point.
+fn nearest_on_cone(d: &Vector, a: &Vector, [r, height]: [&Scalar; 2], at: Span) -> Vector {
+    let h = dot(d, a);
+    let m = total([d.clone(), opposite(&scaled(h.clone(), a))]);
+    let squares = dot(&m, &m);
+    let away = root(greater(squares.clone(), product([ratio(ON_AXIS.0, ON_AXIS.1), square(r.clone())])));
+    // from the rim, 0, to the apex, 1
+    let line = sum([square(r.clone()), square(height.clone())]);
+    let free =
+        sum([product([less(r.clone(), away.clone()), r.clone()]), product([h.clone(), height.clone()])]);
+    let place = lesser(greater(quotient(free, line, at), integer(0)), integer(1));
+    let out = product([r.clone(), less(integer(1), place.clone())]);
+    let up = product([place, height.clone()]);
+    // the distances of both, squared: the base's point is at most as far from the axis as the rim
+    let beyond = greater(less(away.clone(), r.clone()), integer(0));
+    let of_base = sum([square(beyond), square(h.clone())]);
+    let of_side = sum([square(less(away.clone(), out.clone())), square(less(h.clone(), up.clone()))]);
+    let side = step(less(of_base, of_side));
+    let base = less(integer(1), side.clone());
+    let reach = root(greater(squares, square(r.clone())));
+    let beside = sum([
+        product([side.clone(), quotient(out, away.clone(), at)]),
+        product([base, quotient(r.clone(), reach, at)]),
+    ]);
+    let on_surface = total([scaled(beside, &m), scaled(product([side, up]), a)]);
+    // within: above the base, and below the side
+    let below_side = less(
+        product([r.clone(), height.clone()]),
+        sum([product([away, height.clone()]), product([h.clone(), r.clone()])]),
+    );
+    let within = step(lesser(h, below_side));
+    total([scaled(less(integer(1), within.clone()), &on_surface), scaled(within, d)])
 }
 
 /// By how much a solid is thicker than the points that [`nearest`] gives.

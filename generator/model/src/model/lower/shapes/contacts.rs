@@ -1,15 +1,19 @@
 //! Lowers contacts between shapes to contacts of points with normals and gaps.
 
+use super::super::super::hulls::{Hull, NoHull};
 use super::super::super::mechanism::{
     Against, Anchor, BodyId, Contact, FrameId, Kind, PointId, Scalar, Shape, ShapeId, Vector,
 };
 use super::super::super::names::Symbol;
-use super::super::super::pairs::{self, Pair};
+use super::super::super::pairs::{self, MOST_CONTACTS, Outline, Pair};
 use super::super::Lowering;
 use super::boxes;
 use super::capsule_on_box;
 use super::closed_forms::touches;
 use super::features::Touch;
+use super::polytopes;
+use super::solids::corners_of_a_cube;
+use super::sphere_on_polytope;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::span::Span;
 use crate::syntax::tree::{Field, Name, Record};
@@ -99,9 +103,19 @@ impl Lowering<'_> {
             self.report(error.help("a contact is between shapes of two bodies, or of a body and N"));
             return None;
         }
-        let of = |shape: &Shape| (shape.kind, shape.vertices.len());
-        if pairs::contacts(of(striking), pair.inside(), struck.kind).is_none() {
+        let of = |shape: &Shape| Outline::of(shape.kind, shape.vertices.len(), self.hull(shape).ok());
+        let Some(count) = pairs::contacts(of(striking), pair.inside(), of(struck)) else {
             self.refuse(striking, pair, struck, span);
+            return None;
+        };
+        if count > MOST_CONTACTS {
+            let message = format!(
+                "`{}` and `{}` would have {count} contacts, of vertices with faces and of edges with edges: \
+                 more than {MOST_CONTACTS}",
+                striking.name, struck.name
+            );
+            let help = "take simpler polytopes: the number grows with the product of their numbers of edges";
+            self.report(Diagnostic::new(codes::PAIR, span, message).help(help));
             return None;
         }
         let roots = [striking, struck].map(|shape| self.points[shape.at.point.0].root);
@@ -114,15 +128,58 @@ impl Lowering<'_> {
             self.report(error.help("state its position"));
             return None;
         }
-        let definitions = &mut self.out.definitions;
+        let at = record.name.span;
         let touches = match (striking.kind, pair.inside(), struck.kind) {
-            (Kind::Box, false, Kind::Box) => boxes::between(striking, struck, definitions, record.name.span),
+            (Kind::Box, false, Kind::Box) => boxes::between(striking, struck, &mut self.out.definitions, at),
+            (Kind::Polytope, false, Kind::Box | Kind::Polytope) | (Kind::Box, false, Kind::Polytope) => {
+                let (own, other) = (self.solid(striking, span)?, self.solid(struck, span)?);
+                let definitions = &mut self.out.definitions;
+                polytopes::between([striking, struck], [&own, &other], definitions, at)
+            }
+            (Kind::Sphere, false, Kind::Polytope) => {
+                let hull = self.solid(struck, span)?;
+                sphere_on_polytope::between([striking, struck], &hull, &mut self.out.definitions, at)
+            }
             (Kind::Capsule, false, Kind::Box | Kind::Rectangle) => {
-                capsule_on_box::between(striking, struck, definitions, record.name.span)
+                capsule_on_box::between(striking, struck, &mut self.out.definitions, at)
             }
             (_, inside, _) => touches(striking, inside, struck, span),
         };
         Some(([a, b], touches))
+    }
+
+    /// The hull of a polytope.
+    fn hull(&self, shape: &Shape) -> Result<&Hull, NoHull> {
+        self.hulls.get(&shape.name).map_or(Err(NoHull::Unknown), |hull| hull.as_ref().map_err(|why| *why))
+    }
+
+    /// The hull of a box or polytope, whose contacts follow from its faces and edges.
+    fn solid(&mut self, shape: &Shape, span: Span) -> Option<Hull> {
+        if shape.kind == Kind::Box {
+            return Hull::of(&corners_of_a_cube()).ok();
+        }
+        let why = match self.hull(shape) {
+            Ok(hull) => return Some(hull.clone()),
+            Err(why) => why,
+        };
+        let name = &shape.name;
+        let (message, help) = match why {
+            NoHull::Flat => (
+                format!("`{name}` is no solid: all of its vertices are in one plane"),
+                "a solid has at least four vertices that are not in one plane, with the values that the model gives",
+            ),
+            NoHull::NoVertex(vertex) => (
+                format!("point {} of `{name}` is no vertex", vertex + 1),
+                "it lies within the hull of the others, or where another is: leave it out",
+            ),
+            NoHull::Unknown => (
+                format!("the faces of `{name}` are not known"),
+                "they follow from the places of its vertices, with the values that the model gives to its parameters",
+            ),
+        };
+        let error = Diagnostic::new(codes::PAIR, span, message);
+        self.report(error.related(shape.span, "its vertices").help(help));
+        None
     }
 
     /// A pair between which no contact is compiled.
@@ -135,7 +192,9 @@ impl Lowering<'_> {
             struck.name,
             struck.kind.with_article()
         );
-        let turned = pairs::contacts((struck.kind, struck.vertices.len()), pair.inside(), striking.kind);
+        let [own, other] =
+            [striking, struck].map(|shape| Outline::of(shape.kind, shape.vertices.len(), None));
+        let turned = pairs::contacts(other, pair.inside(), own);
         let help = match (turned, pairs::possible(striking.kind)) {
             (Some(_), _) => format!("write `{} {word} {}`", struck.name, striking.name),
             (None, list) if list.is_empty() => {

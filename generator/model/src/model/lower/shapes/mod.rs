@@ -11,9 +11,12 @@ mod faces;
 mod features;
 mod heights;
 mod masses;
+mod polytopes;
 mod separation;
 mod shared;
 mod sizes;
+mod solids;
+mod sphere_on_polytope;
 
 pub(super) use bodies::shape_field;
 

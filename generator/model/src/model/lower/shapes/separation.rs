@@ -2,7 +2,10 @@
 //! docs/theory.md).
 
 use super::algebra::*;
-use crate::model::mechanism::Scalar;
+use super::faces::{OVERLAPS, gap_of};
+use super::features::Touch;
+use super::shared::Shared;
+use crate::model::mechanism::{Anchor, Scalar, Vector};
 
 /// Edges whose angle has a sine below this are parallel: the vertices at their ends touch instead.
 pub const PARALLEL: (i64, i64) = (1, 1_000_000);
@@ -26,4 +29,19 @@ pub fn crossed(squared_sine: Scalar, extent: &Scalar) -> Scalar {
 /// The least of some bounds.
 pub fn least(bounds: Vec<Scalar>) -> Scalar {
     bounds.into_iter().reduce(lesser).unwrap_or_else(|| integer(1))
+}
+
+/// A contact between features that end: with its normal and a tangent, its height and validity, and the distance and the
+/// extent of the bodies. Where it is none, its gap is how far it is from that.
+pub fn ending(
+    point: Anchor,
+    (normal, tangent): (Vector, Vector),
+    (height, validity): (Scalar, Scalar),
+    (distance, extent): (&Scalar, &Scalar),
+    shared: &mut Shared<'_>,
+) -> Touch {
+    let validity = shared.scalar(validity, "validity of a contact");
+    let apart = all([distance.clone(), product([ratio(OVERLAPS.0, OVERLAPS.1), extent.clone()])]);
+    let gap = gap_of(height, opposite_of(validity.clone()), apart);
+    Touch { point, normal, gap, validity: Some(validity), tangent: Some(tangent) }
 }
