@@ -10,6 +10,7 @@ mod expansion;
 #[path = "../../tests/tests/common/expectations.rs"]
 mod expectations;
 mod imports;
+mod iterated_contacts;
 mod kept_configurations;
 mod language;
 mod language_page;

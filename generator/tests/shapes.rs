@@ -39,7 +39,7 @@ contacts {{ touch {{ {contact} }} }}
     checked.mechanism.unwrap_or_else(|| panic!("{said}"))
 }
 
-fn random_state(random: &mut Random, m: &Mechanism) -> State {
+pub fn random_state(random: &mut Random, m: &Mechanism) -> State {
     let mut state = State::of(m);
     for (q, variable) in state.coordinates.iter_mut().zip(&m.coordinates) {
         *q = random.number() * if variable.unit == "m" { 1.0 } else { 3.0 };
@@ -72,7 +72,7 @@ pub fn still(state: &State) -> Vec<HyperDual> {
 }
 
 /// `None` where a direction is lost, which is said by name: a centre within a solid.
-fn said(m: &Mechanism, state: &State) -> Option<Vec<Said>> {
+pub fn said(m: &Mechanism, state: &State) -> Option<Vec<Said>> {
     let values = evaluator(m, state, still(state));
     let of = |contact: &Contact| -> Result<Said, Failure> {
         Ok(Said {
@@ -88,7 +88,7 @@ fn said(m: &Mechanism, state: &State) -> Option<Vec<Said>> {
     }
 }
 
-fn pose(m: &Mechanism, state: &State) -> Pose {
+pub fn pose(m: &Mechanism, state: &State) -> Pose {
     let values = evaluator(m, state, still(state));
     let of = |body: usize| {
         let body = &m.bodies[body];

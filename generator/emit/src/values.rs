@@ -153,5 +153,6 @@ fn function(function: Function) -> TokenStream {
         Function::Sign => quote!(sign),
         Function::Min => quote!(min),
         Function::Max => quote!(max),
+        Function::Frozen => quote!(frozen),
     }
 }

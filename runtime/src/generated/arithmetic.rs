@@ -62,6 +62,12 @@ pub fn cos<T: Number>(a: T) -> T {
     sin_cos(a).1
 }
 
+/// The value itself, of which derived code takes no notice where it is differentiated.
+#[inline(always)]
+pub fn frozen<T: Number>(a: T) -> T {
+    a
+}
+
 macro_rules! functions {
     ($($(#[$doc:meta])* $name:ident($($argument:ident),+)),* $(,)?) => {$(
         $(#[$doc])*

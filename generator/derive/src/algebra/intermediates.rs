@@ -187,14 +187,14 @@ impl Intermediates {
                     }
                 }
                 Abs | Cosh if negative => return self.call(function, vec![argument.neg()]),
-                Asin | Atan | Sinh | Tanh if negative => {
+                Asin | Atan | Sinh | Tanh | Frozen if negative => {
                     return self.call(function, vec![argument.neg()]).neg();
                 }
                 _ => {}
             }
             if argument.is_zero() {
                 match function {
-                    Asin | Atan | Sqrt | Abs | Sinh | Tanh => return Expr::zero(),
+                    Asin | Atan | Sqrt | Abs | Sinh | Tanh | Frozen => return Expr::zero(),
                     Exp | Cosh => return Expr::one(),
                     _ => {}
                 }
@@ -306,7 +306,7 @@ impl Intermediates {
             Cosh => self.call(Sinh, vec![a]),
             Tanh => Expr::one().sub(&value.mul(&value)),
             Abs => self.call(Sign, vec![a]),
-            Sign => Expr::zero(),
+            Sign | Frozen => Expr::zero(),
             Min | Max => {
                 // (1 +- sign(a - b)) / 2: the active branch.
                 let sign = self.call(Sign, vec![a.sub(&arguments[1])]);

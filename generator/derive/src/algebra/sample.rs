@@ -140,6 +140,7 @@ fn call(function: Function, a: Sized, b: Sized) -> Sized {
         Cosh => a.mapped(x.cosh(), x.sinh()),
         Tanh => a.mapped(x.tanh(), 1.0 - x.tanh().powi(2)),
         Abs => a.mapped(x.abs(), 1.0),
+        Frozen => a.mapped(x, 1.0),
         Sign => Sized::exact(if x < 0.0 { -1.0 } else { 1.0 }),
         Min => Sized::rounded(x.min(b.value), a.terms + b.terms),
         Max => Sized::rounded(x.max(b.value), a.terms + b.terms),

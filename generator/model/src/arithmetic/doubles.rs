@@ -70,6 +70,7 @@ pub fn call(function: Function, a: f64) -> f64 {
                 -1.0
             }
         }
+        Function::Frozen => a,
         Function::Atan2 | Function::Min | Function::Max => f64::NAN,
     }
 }

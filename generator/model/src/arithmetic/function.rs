@@ -22,4 +22,6 @@ pub enum Function {
     Sign,
     Min,
     Max,
+    /// the argument, of which derivatives take no notice: what an iteration starts from
+    Frozen,
 }

@@ -190,6 +190,7 @@ impl Arithmetic for Reproducible {
             Function::Sinh | Function::Cosh | Function::Tanh => self.hyperbolic(function),
             Function::Sqrt | Function::Abs => Reproducible(self.0.call(function)),
             Function::Sign => Self::exactly(doubles::call(function, self.rounded())),
+            Function::Frozen => self,
             Function::Atan2 | Function::Min | Function::Max => Self::exactly(f64::NAN),
         }
     }

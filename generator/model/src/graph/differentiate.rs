@@ -140,7 +140,7 @@ fn slope(graph: &mut Graph, node: Node, function: Function, arguments: &[Node], 
             graph.sub(one, square)
         }
         Abs => graph.call(Sign, vec![a]),
-        Sign => graph.integer(0),
+        Sign | Frozen => graph.integer(0),
         Min | Max => {
             // (1 +- sign(a - b)) / 2: the branch that is taken
             let difference = graph.sub(a, arguments[1]);

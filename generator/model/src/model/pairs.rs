@@ -101,9 +101,9 @@ pub fn contacts(striking: Outline, inside: bool, struck: Outline) -> Option<usiz
         // its ends, and places between them at edges and vertices
         (Capsule, Box, false) => Some(2 + 12 + 8),
         (Capsule, Rectangle, false) => Some(2 + 4),
-        (Sphere, Sphere | Capsule | Cylinder | Cone | Box | Rectangle | Disc | Torus | Polytope, false) => {
-            Some(1)
-        }
+        (Sphere, Sphere | Capsule | Cylinder | Cone | Box | Rectangle | Disc | Torus | Polytope, false)
+        | (Sphere, Surface | Curve, false)
+        | (Sphere | Ellipsoid, Ellipsoid, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder, true) => Some(1),
         (Sphere, Box, true) => Some(6),
         _ => None,

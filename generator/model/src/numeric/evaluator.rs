@@ -172,6 +172,7 @@ impl<'m> Evaluator<'m> {
                     Function::Tanh => a.tanh(),
                     Function::Abs => a.abs(),
                     Function::Sign => HyperDual::constant(if a.re < 0.0 { -1.0 } else { 1.0 }),
+                    Function::Frozen => HyperDual::constant(a.re),
                     Function::Atan2 => a.atan2(self.scalar(&arguments[1], level)?),
                     Function::Min | Function::Max => {
                         let b = self.scalar(&arguments[1], level)?;

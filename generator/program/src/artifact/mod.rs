@@ -54,7 +54,7 @@ pub struct Artifact {
 }
 
 /// The words of functions in derivation files.
-const FUNCTIONS: [(Function, &str); 17] = [
+const FUNCTIONS: [(Function, &str); 18] = [
     (Function::Sin, "sin"),
     (Function::Cos, "cos"),
     (Function::Tan, "tan"),
@@ -72,6 +72,7 @@ const FUNCTIONS: [(Function, &str); 17] = [
     (Function::Sign, "sign"),
     (Function::Min, "min"),
     (Function::Max, "max"),
+    (Function::Frozen, "frozen"),
 ];
 
 /// Whether the function takes two values.

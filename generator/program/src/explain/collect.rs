@@ -211,5 +211,6 @@ fn function_name(function: Function) -> &'static str {
         Function::Sign => "sign",
         Function::Min => "min",
         Function::Max => "max",
+        Function::Frozen => "frozen",
     }
 }

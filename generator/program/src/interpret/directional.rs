@@ -248,7 +248,7 @@ impl Arithmetic for Dual {
             Function::Cosh => call(Function::Sinh, a),
             Function::Tanh => (1.0 - value) * (1.0 + value),
             Function::Abs => call(Function::Sign, a),
-            Function::Sign => 0.0,
+            Function::Sign | Function::Frozen => 0.0,
             Function::Atan2 | Function::Min | Function::Max => f64::NAN,
         };
         self.with(value, slope)

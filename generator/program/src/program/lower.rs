@@ -343,7 +343,8 @@ impl<'a> Lowering<'a> {
             | Function::Asin
             | Function::Atan
             | Function::Sinh
-            | Function::Tanh => (self.builder.call(function, argument.value), argument.negative),
+            | Function::Tanh
+            | Function::Frozen => (self.builder.call(function, argument.value), argument.negative),
             _ => {
                 let argument = self.apply(argument);
                 (self.builder.call(function, argument), false)

@@ -100,6 +100,7 @@ fn call(function: Function, [low, high]: Bounds) -> Bounds {
         Abs if high <= 0.0 => [-high, -low],
         Abs => [0.0, high.max(-low)],
         Sign => [-1.0, 1.0],
+        Frozen => [low, high],
         Cosh => [1.0, f64::INFINITY],
         Asin | Atan => [-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2],
         Acos => [0.0, std::f64::consts::PI],

@@ -68,6 +68,7 @@ pub fn call<const P: u64>(
         Sinh => hyperbolic().map(|(_, sine)| sine),
         Cosh => hyperbolic().map(|(cosine, _)| cosine),
         Tanh => hyperbolic().and_then(quotient),
+        Frozen => values.residue(value),
         Asin | Acos | Atan | Atan2 | Sqrt | Log | Abs | Sign | Min | Max => {
             Some(unknown(function, &[values.residue(value)?], place))
         }

@@ -10,10 +10,12 @@ use super::super::Lowering;
 use super::boxes;
 use super::capsule_on_box;
 use super::closed_forms::touches;
+use super::ellipsoids;
 use super::features::Touch;
 use super::polytopes;
 use super::solids::corners_of_a_cube;
 use super::sphere_on_polytope;
+use super::sphere_on_surface;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::span::Span;
 use crate::syntax::tree::{Field, Name, Record};
@@ -142,6 +144,15 @@ impl Lowering<'_> {
             }
             (Kind::Capsule, false, Kind::Box | Kind::Rectangle) => {
                 capsule_on_box::between(striking, struck, &mut self.out.definitions, at)
+            }
+            (Kind::Sphere, false, Kind::Ellipsoid) => {
+                ellipsoids::under_sphere([striking, struck], &mut self.out.definitions, at)
+            }
+            (Kind::Ellipsoid, false, Kind::Ellipsoid) => {
+                ellipsoids::between([striking, struck], &mut self.out.definitions, at)
+            }
+            (Kind::Sphere, false, Kind::Surface | Kind::Curve) => {
+                sphere_on_surface::between([striking, struck], &mut self.out.definitions, at)
             }
             (_, inside, _) => touches(striking, inside, struck, span),
         };

@@ -49,7 +49,7 @@ impl Scalar {
 }
 
 /// The derivative by x or y; `None` where there is no rule.
-fn slope(value: &Scalar, by: DefinitionId, at: Span) -> Option<Scalar> {
+pub fn slope(value: &Scalar, by: DefinitionId, at: Span) -> Option<Scalar> {
     let of = |part: &Scalar| slope(part, by, at);
     Some(match value {
         Scalar::Definition(id) if *id == by => integer(1),
@@ -93,6 +93,7 @@ fn is_constant(value: &Scalar) -> bool {
     match value {
         Scalar::Number(_) | Scalar::Pi | Scalar::Parameter(_) => true,
         Scalar::Neg(a) => is_constant(a),
+        Scalar::Add(list) | Scalar::Mul(list) => list.iter().all(is_constant),
         Scalar::Div(a, b, _) => is_constant(a) && is_constant(b),
         _ => false,
     }
@@ -116,6 +117,7 @@ fn outer(function: Function, a: &Scalar, value: &Scalar, at: Span) -> Option<Sca
         Function::Cosh => call(Function::Sinh, a),
         Function::Tanh => less(one(), square(value.clone())),
         // a surface with an edge has no normal there
+        Function::Frozen => integer(0),
         Function::Abs | Function::Sign | Function::Min | Function::Max | Function::Atan2 => return None,
     })
 }

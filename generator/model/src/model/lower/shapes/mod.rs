@@ -7,9 +7,11 @@ mod capsule_on_box;
 mod closed_forms;
 mod colours;
 mod contacts;
+mod ellipsoids;
 mod faces;
 mod features;
 mod heights;
+mod iterations;
 mod masses;
 mod polytopes;
 mod separation;
@@ -17,6 +19,7 @@ mod shared;
 mod sizes;
 mod solids;
 mod sphere_on_polytope;
+mod sphere_on_surface;
 
 pub(super) use bodies::shape_field;
 

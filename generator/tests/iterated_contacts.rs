@@ -1,0 +1,222 @@
+//! Contacts that solve an equation: spheres and ellipsoids on ellipsoids, spheres on surfaces and curves.
+//!
+//! Places of contact are known in advance: of convex bodies the support points of a direction that is chosen first, of a
+//! surface a point that is chosen first. Then the bodies are placed so that they touch there, or are apart along the normal.
+
+use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::numeric::hyper_dual::HyperDual;
+use hodograph_generator::numeric::views::{dot3, norm3, sub3};
+use hodograph_generator::numeric::{Level, State, Views};
+use hodograph_random::Random;
+
+use crate::shapes::{Pose, Said, V, along, back, compare, evaluator, model, plus, pose, random_state, said, scaled};
+
+const POSES: usize = 10_000;
+
+/// A n/sqrt(n . A n) of an ellipsoid with these semi-axes: where its outward normal is n.
+fn support(sizes: V, n: V) -> V {
+    let stretched = [0, 1, 2].map(|i| sizes[i] * n[i]);
+    let length = norm3(stretched);
+    [0, 1, 2].map(|i| sizes[i] * stretched[i] / length)
+}
+
+fn direction(random: &mut Random) -> V {
+    loop {
+        let v = [0, 1, 2].map(|_| random.number());
+        if (0.1..1.0).contains(&norm3(v)) {
+            return scaled(v, 1.0 / norm3(v));
+        }
+    }
+}
+
+/// What a contact says at touching poses: the largest differences of gap, normal and point; of the rate of the gap from
+/// n . v; and of the rates of normal and point from differences.
+#[derive(Debug, Default)]
+struct Seen {
+    place: f64,
+    rate: f64,
+    differences: f64,
+    poses: usize,
+}
+
+impl Seen {
+    /// Looks at a state at which the point and the normal of the first contact are known.
+    fn look(&mut self, m: &Mechanism, state: &State, (point, normal): (V, V), size: f64, random: &mut Random) {
+        let found = said(m, state).unwrap_or_else(|| panic!("{state:?}"));
+        let one = found[0];
+        let off = norm3(sub3(one.point, point)).max(one.gap.abs()) / size;
+        self.place = self.place.max(off).max(norm3(sub3(one.normal, normal)));
+        let contact = &m.contacts[0];
+        let views = Views::at(m, state).unwrap();
+        let rate = views.now.scalar(contact.gap.as_ref().unwrap(), Level::Geometry).unwrap().e1;
+        let velocity = views.now.contact_velocity(contact).unwrap().map(|c| c.re);
+        self.rate = self.rate.max((rate - dot3(velocity, one.normal)).abs() / size.max(norm3(velocity)));
+        self.poses += 1;
+        if self.poses % 10 != 0 {
+            return;
+        }
+        // along one direction of all coordinates
+        let ways: Vec<f64> = state.coordinates.iter().map(|_| random.number()).collect();
+        let moved = |h: f64| {
+            let mut state = state.clone();
+            state.coordinates.iter_mut().zip(&ways).for_each(|(q, d)| *q += h * d);
+            said(m, &state).map(|said| said[0])
+        };
+        let h = 2e-4 * size;
+        let around: Option<Vec<Said>> = [-2.0, -1.0, 1.0, 2.0].into_iter().map(|k| moved(k * h)).collect();
+        let Some(around) = around else { return };
+        let rate = |of: &dyn Fn(&Said) -> f64| -> f64 {
+            around.iter().zip([1.0, -8.0, 8.0, -1.0]).map(|(said, w)| w * of(said)).sum::<f64>() / (12.0 * h)
+        };
+        let second = |of: &dyn Fn(&Said) -> f64| -> f64 {
+            let sum: f64 = around.iter().zip([-1.0, 16.0, 16.0, -1.0]).map(|(said, w)| w * of(said)).sum();
+            (sum - 30.0 * of(&one)) / (12.0 * h * h)
+        };
+        let coordinates = state.coordinates.iter().zip(&ways);
+        let coordinates = coordinates.map(|(q, d)| HyperDual { re: *q, e1: *d, e2: *d, e12: 0.0 }).collect();
+        let values = evaluator(m, state, coordinates);
+        let point = values.position(contact.point).unwrap();
+        let normal = values.vector(&contact.normal, Level::Geometry).unwrap();
+        for axis in 0..3 {
+            let off = (rate(&|said| said.point[axis]) - point[axis].e1).abs() / (1.0 + point[axis].e1.abs());
+            let tilt = (rate(&|said| said.normal[axis]) - normal[axis].e1).abs() / (1.0 + normal[axis].e1.abs());
+            let bent = (second(&|said| said.normal[axis]) - normal[axis].e12).abs() * size;
+            let bent = 1e-3 * bent / (1.0 + normal[axis].e12.abs());
+            self.differences = self.differences.max(off).max(tilt).max(bent);
+        }
+    }
+
+    fn end(&self, name: &str, most: [f64; 3]) {
+        println!("{name}: {:.1e} of places, {:.1e} of rates, {:.1e} beside differences", self.place, self.rate, self.differences);
+        assert!(self.place < most[0] && self.rate < most[1] && self.differences < most[2], "{name}: {self:?}");
+    }
+}
+
+/// Moves the body A of a state by a vector.
+fn shift(state: &mut State, by: V) {
+    (0..3).for_each(|i| state.coordinates[i] += by[i]);
+}
+
+/// A centre outside has one point of the surface at which the normal leads to it; that is the nearest one.
+#[test]
+fn spheres_on_ellipsoids() {
+    let m = model("S { of: A, sphere: k }, T { of: B, ellipsoid: [2*k, 3*k, 5*k] }", "S on T");
+    let sizes = [0.2, 0.3, 0.5];
+    let inside = std::cell::Cell::new(0);
+    compare("sphere on ellipsoid", &m, |said, pose| {
+        let [one] = said else { panic!() };
+        let c = along(sub3(pose.at[0], pose.at[1]), &pose.axes[1]);
+        let n = along(one.normal, &pose.axes[1]);
+        let distance = one.gap + 0.1;
+        // far inside the way out is not the shortest one, or there are several
+        if distance < -0.05 {
+            return None;
+        }
+        inside.set(inside.get() + usize::from(distance < 0.0));
+        let nearest = plus(c, n, -distance);
+        let off = norm3(sub3(nearest, support(sizes, n)));
+        let point = norm3(sub3(one.point, plus(pose.at[0], one.normal, -0.1)));
+        Some(off.max(point))
+    });
+    println!("{} centres inside", inside.get());
+    assert!(inside.get() > 50);
+}
+
+/// Two ellipsoids, placed so that they touch at a direction that is chosen first, and then moved along it.
+fn touch(sizes: [V; 2], poses: usize, most: [f64; 3]) {
+    let list = |sizes: V| sizes.map(|size| format!("{}*k", 10.0 * size)).join(", ");
+    let [own, other] = sizes.map(list);
+    let shapes = format!("S {{ of: A, ellipsoid: [{own}] }}, T {{ of: B, ellipsoid: [{other}] }}");
+    let m = model(&shapes, "S on T");
+    let mut random = Random::new(3);
+    let (mut seen, mut wrong, mut apart) = (Seen::default(), 0, 0);
+    let least = sizes.iter().flatten().fold(f64::INFINITY, |least, size| size.min(least));
+    for _ in 0..poses {
+        let mut state = random_state(&mut random, &m);
+        let now: Pose = pose(&m, &state);
+        let n = direction(&mut random);
+        // of A where -n leads out, of B where n does
+        let own = plus(now.at[0], back(support(sizes[0], along(n, &now.axes[0])), &now.axes[0]), -1.0);
+        let other = plus(now.at[1], back(support(sizes[1], along(n, &now.axes[1])), &now.axes[1]), 1.0);
+        shift(&mut state, sub3(other, own));
+        seen.look(&m, &state, (other, n), least, &mut random);
+        // moved along n they are apart, or overlap
+        let by = 0.1 * least * random.number();
+        shift(&mut state, scaled(n, by));
+        apart += usize::from(by > 0.0);
+        wrong += usize::from((said(&m, &state).unwrap()[0].gap > 0.0) != (by > 0.0));
+    }
+    seen.end(&shapes, most);
+    println!("{apart} of {poses} apart, {wrong} with the wrong sign");
+    assert!(wrong == 0 && apart > poses / 3);
+}
+
+#[test]
+fn ellipsoids_touch_at_their_support_points() {
+    touch([[0.2, 0.3, 0.5], [0.4, 0.1, 0.2]], POSES, [1e-12, 1e-12, 1e-6]);
+}
+
+/// Semi-axes in ratios of 10 to 100.
+#[test]
+fn needles_and_discs_touch() {
+    touch([[0.01, 0.1, 1.0], [1.0, 0.1, 0.3]], POSES / 5, [1e-10, 1e-11, 1e-5]);
+    touch([[1.0, 0.9, 0.01], [0.02, 0.02, 1.0]], POSES / 5, [1e-10, 1e-11, 1e-5]);
+    touch([[0.1, 0.1, 0.1], [10.0, 0.1, 0.1]], POSES / 5, [1e-10, 1e-11, 1e-5]);
+}
+
+/// The heights of both kinds of ground, with their slopes.
+type Ground = (&'static str, usize, fn(f64, f64) -> (f64, [f64; 2]));
+
+fn waves(x: f64, y: f64) -> (f64, [f64; 2]) {
+    let ((sx, cx), (sy, cy)) = ((3.0 * x).sin_cos(), (2.0 * y).sin_cos());
+    (0.1 * sx * cy, [0.3 * cx * cy, -0.2 * sx * sy])
+}
+
+fn road(x: f64, _: f64) -> (f64, [f64; 2]) {
+    let (s, c) = (3.0 * x).sin_cos();
+    (0.1 * s * s, [0.6 * s * c, 0.0])
+}
+
+#[test]
+fn spheres_on_heights() {
+    let grounds: [Ground; 2] =
+        [("surface: k*sin(3*x/k/10)*cos(2*y/k/10)", 2, waves), ("curve: k*sin(3*x/k/10)^2", 1, road)];
+    for (shape, up, height) in grounds {
+        let m = model(&format!("S {{ of: A, sphere: k }}, W {{ of: B, {shape} }}"), "S on W");
+        let mut random = Random::new(11);
+        let (mut seen, mut wrong) = (Seen::default(), 0);
+        for _ in 0..POSES {
+            let mut state = random_state(&mut random, &m);
+            let now: Pose = pose(&m, &state);
+            let place = [0, 1].map(|_| 2.0 * random.number());
+            let (level, [sx, sy]) = height(place[0], place[1]);
+            let (foot, n) = if up == 1 {
+                ([place[0], level, place[1]], [-sx, 1.0, 0.0])
+            } else {
+                ([place[0], place[1], level], [-sx, -sy, 1.0])
+            };
+            let n = back(scaled(n, 1.0 / norm3(n)), &now.axes[1]);
+            let foot = plus(now.at[1], back(foot, &now.axes[1]), 1.0);
+            shift(&mut state, sub3(plus(foot, n, 0.1), now.at[0]));
+            seen.look(&m, &state, (foot, n), 0.3, &mut random);
+            let by = 0.02 * random.number();
+            shift(&mut state, scaled(n, by));
+            wrong += usize::from((said(&m, &state).unwrap()[0].gap > 0.0) != (by > 0.0));
+        }
+        seen.end(shape, [1e-12, 1e-12, 1e-6]);
+        assert!(wrong == 0);
+    }
+}
+
+/// A sphere that is larger than a hollow touches it at several places: that is an error by name, and no number.
+#[test]
+fn spheres_that_do_not_fit_are_errors() {
+    let m = model("S { of: A, sphere: 10*k }, W { of: B, curve: k*sin(x/k)^2 }", "S on W");
+    let mut state = State::of(&m);
+    state.coordinates.iter_mut().for_each(|q| *q = 0.0);
+    state.coordinates[1] = 2.0;
+    assert!(said(&m, &state).is_none());
+    // over a crest it has one place
+    state.coordinates[0] = 0.1 * std::f64::consts::FRAC_PI_2;
+    assert!((said(&m, &state).unwrap()[0].gap - 0.9).abs() < 1e-12);
+}
