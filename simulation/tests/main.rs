@@ -28,6 +28,7 @@ mod one_pass;
 mod painleve;
 mod poisson;
 mod polytopes;
+mod roads;
 mod rotation;
 mod settling;
 mod several;
