@@ -410,7 +410,7 @@ fn spheres_on_solids() {
 
 /// The nearest points of two segments from the middles a_0 and b_0 along unit vectors, and sin^2 of their angle: of
 /// all ends with the other segment, and of the insides, the pair that is nearest.
-fn of_segments([a_0, a]: [V; 2], h: f64, [b_0, b]: [V; 2], k: f64) -> (V, V, f64) {
+pub fn of_segments([a_0, a]: [V; 2], h: f64, [b_0, b]: [V; 2], k: f64) -> (V, V, f64) {
     let held =
         |from: V, along: V, half: f64, p: V| plus(from, along, dot3(sub3(p, from), along).clamp(-half, half));
     let mut pairs = Vec::new();
@@ -508,7 +508,7 @@ fn of_segment_and_box([c, a]: [V; 2], h: f64, half: V) -> (V, V, f64) {
 }
 
 /// The contact with the least gap of those that are valid: elsewhere a gap is only positive.
-fn nearest_valid(m: &Mechanism, state: &State, found: &[Said]) -> usize {
+pub fn nearest_valid(m: &Mechanism, state: &State, found: &[Said]) -> usize {
     let values = evaluator(m, state, still(state));
     let is_valid = |contact: &Contact| {
         contact.validity.as_ref().is_none_or(|of| values.scalar(of, Level::Geometry).unwrap().re >= 0.0)

@@ -75,7 +75,7 @@ fn outline(shape: &Record, hulls: &Hulls) -> Option<Outline> {
 /// Whether the contacts of a pair follow from the edges of a polytope.
 fn needs_hulls(striking: Kind, inside: bool, struck: Kind) -> bool {
     use Kind::*;
-    !inside && matches!((striking, struck), (Polytope | Box | Sphere, Polytope) | (Polytope, Box))
+    !inside && matches!((striking, struck), (Polytope | Box | Sphere | Capsule, Polytope) | (Polytope, Box))
 }
 
 /// The number of contacts between two shapes; `None`: none is compiled. Of polytopes whose edges are not known it is 1.
@@ -100,6 +100,7 @@ pub fn contacts(striking: Outline, inside: bool, struck: Outline) -> Option<usiz
         (Capsule, Capsule, false) => Some(1),
         // its ends, and places between them at edges and vertices
         (Capsule, Box, false) => Some(2 + 12 + 8),
+        (Capsule, Polytope, false) => Some(struck.edges.map_or(1, |edges| 2 + edges + struck.vertices)),
         (Capsule, Rectangle, false) => Some(2 + 4),
         (Sphere, Sphere | Capsule | Cylinder | Cone | Box | Rectangle | Disc | Torus | Polytope, false)
         | (Sphere, Surface | Curve, false)

@@ -1,6 +1,6 @@
 //! Contacts of a capsule on a box, or on a rectangle in a plane of motion (section 16.11 of docs/theory.md).
 //!
-//! A capsule is what lies within r of a segment. Its contacts are those of the ends of the segment with the box, of the
+//! A capsule's contacts are those of the ends of the segment with the box, of the
 //! segment with each edge, and of the segment with each vertex. Each gap is the distance of these two minus r: no less
 //! than that of the bodies. Each is valid where the two are nearest to each other, and a little beyond, where it has the
 //! place and the normal of the neighbour that takes over from it.
@@ -10,23 +10,17 @@
 
 use super::algebra::*;
 use super::faces::{OVERLAPS, STEEP};
-use super::features::{Touch, axes_of};
+use super::features::Touch;
+use super::segment::Segment;
 use super::separation::*;
 use super::shared::Shared;
-use crate::model::mechanism::{Definition, FrameId, Kind, Scalar, Shape, Vector};
+use crate::model::mechanism::{Definition, Kind, Scalar, Shape};
 use crate::span::Span;
 
 /// The number of contacts on a box: two ends, twelve edges, eight vertices.
 pub const ON_BOX: usize = 2 + 12 + 8;
 /// The number of contacts on a rectangle: two ends, four corners.
 pub const ON_RECTANGLE: usize = 2 + 4;
-
-/// The angle, rad, by which a normal may turn beyond the border of a contact before the contact ends. It is far above the
-/// rounding of places, and does no harm: beyond the border the contact has the place and the normal of the neighbour that
-/// takes over, or no neighbour takes over.
-const TURN: (i64, i64) = (1, 1_000_000);
-/// The same at borders beyond which the neighbour has another place and normal.
-const FINE: (i64, i64) = (4, 10_000_000_000);
 
 /// The contacts: ends of the capsule, then edges of the box along x, y and z, then its vertices.
 pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
@@ -48,47 +42,28 @@ pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>
 const SIDES: [[i64; 2]; 4] = [[1, 1], [-1, 1], [1, -1], [-1, -1]];
 
 struct Pair<'s> {
-    capsule: &'s Shape,
-    axis: Vector,
-    radius: Scalar,
-    half_length: Scalar,
-    /// the frame and the half sides of the box, of which a rectangle has two
-    frame: FrameId,
+    segment: Segment<'s>,
+    /// half sides of the box, of which a rectangle has two
     half: Vec<Scalar>,
-    /// components of the capsule's axis, and of its middle from that of the box
-    a: [Scalar; 3],
-    d: [Scalar; 3],
-    /// the sum of all half lengths and of the radius
-    extent: Scalar,
     /// how far the segment and the box are apart along any of the axes that might separate them: of a segment that
     /// passes through the box it is negative
     apart: Scalar,
 }
 
-/// What a contact is of: the nearest place on the segment, and what leads there from the box.
-struct Near {
-    /// from the middle of the capsule, along its axis
-    t: Scalar,
-    w: [Scalar; 3],
-    /// the length of w
-    distance: Scalar,
+impl<'s> std::ops::Deref for Pair<'s> {
+    type Target = Segment<'s>;
+
+    fn deref(&self) -> &Segment<'s> {
+        &self.segment
+    }
 }
 
 impl<'s> Pair<'s> {
     fn of(capsule: &'s Shape, solid: &Shape, shared: &mut Shared<'_>) -> Pair<'s> {
-        let axis = capsule.axis.clone().unwrap_or(Vector::Zero);
-        let sizes = |i: usize| capsule.sizes.get(i).cloned().unwrap_or_else(|| integer(0));
-        let (radius, half_length) = (sizes(0), half(&sizes(1)));
         let half: Vec<Scalar> = solid.sizes.iter().map(half).collect();
-        let from = capsule.at.from(&solid.at);
-        let axes = axes_of(solid);
-        let a = axes.each_ref().map(|e| shared.scalar(dot(&axis, e), "cosine"));
-        let d = axes.each_ref().map(|e| shared.scalar(dot(&from, e), "distance of the middles"));
-        let extent = all(half.iter().cloned().chain([radius.clone(), half_length.clone()]));
-        let extent = shared.scalar(extent, "extent");
         let frame = solid.axes.unwrap_or(solid.frame);
-        let apart = integer(0);
-        let pair = Pair { capsule, axis, radius, half_length, frame, half, a, d, extent, apart };
+        let segment = Segment::of(capsule, solid, (frame, half.clone()), shared);
+        let pair = Pair { segment, half, apart: integer(0) };
         let apart = shared.scalar(pair.separation(shared.at), "distance of the segment");
         Pair { apart, ..pair }
     }
@@ -129,36 +104,9 @@ impl<'s> Pair<'s> {
         root(greater(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
     }
 
-    /// What leads to a place on the segment from a place of the box.
-    fn near(&self, t: Scalar, from: &[Scalar; 3], shared: &mut Shared<'_>) -> Near {
-        let w: [Scalar; 3] =
-            std::array::from_fn(|i| all([from[i].clone(), product([t.clone(), self.a[i].clone()])]));
-        let w = w.map(|w| shared.scalar(w, "distance from a feature"));
-        let distance = norm(&Vector::Components(self.frame, Box::new(w.clone())));
-        let distance = shared.scalar(distance, "distance from a feature");
-        Near { t, w, distance }
-    }
-
-    /// The part of w along the segment.
-    fn along(&self, near: &Near) -> Scalar {
-        all((0..3).map(|i| product([near.w[i].clone(), self.a[i].clone()])))
-    }
-
     /// 1 where edges along an axis are not parallel to the segment, so that they have contacts with it, else 0.
     fn crosses(&self, j: usize) -> Scalar {
         step(less(self.squared_sine(j), square(ratio(PARALLEL.0, PARALLEL.1))))
-    }
-
-    /// How far a component of w may be on the other side of zero at most: an angle times the distance.
-    fn whole_turn(&self, near: &Near) -> Scalar {
-        product([ratio(TURN.0, TURN.1), near.distance.clone()])
-    }
-
-    /// The same at a place with this distance from the border to a neighbour with another normal. It is continuous there,
-    /// since a zero of a validity that jumps would not be found.
-    fn turn(&self, near: &Near, from_neighbour: Scalar) -> Scalar {
-        let fine = product([ratio(FINE.0, FINE.1), near.distance.clone()]);
-        lesser(self.whole_turn(near), all([fine, greater(from_neighbour, integer(0))]))
     }
 
     /// The contact of an end, on this side of the middle: a ball on the box. It is the nearest place of the segment
@@ -267,36 +215,4 @@ impl<'s> Pair<'s> {
         }
     }
 
-    /// Between the ends w is across the segment.
-    fn is_inside(&self, near: &Near) -> Vec<Scalar> {
-        vec![less(self.whole_turn(near), size(self.along(near)))]
-    }
-
-    fn share(&self, (n, d): (i64, i64)) -> Scalar {
-        product([ratio(n, d), self.extent.clone()])
-    }
-
-    /// The contact; where it is not valid its gap is positive. Where the bodies touch, the bounds are angles times the
-    /// radius, and the validity is such an angle times the extent.
-    fn touch(&self, near: &Near, bounds: Vec<Scalar>, shared: &mut Shared<'_>) -> Touch {
-        let at = shared.at;
-        let scale = quotient(self.extent.clone(), self.radius.clone(), at);
-        let validity = shared.scalar(product([scale, least(bounds)]), "validity of a contact");
-        let height = less(near.distance.clone(), self.radius.clone());
-        let gap = greater(height, opposite_of(validity.clone()));
-        let part = |w: &Scalar| quotient(w.clone(), near.distance.clone(), at);
-        let normal = Vector::Components(self.frame, Box::new(near.w.each_ref().map(part)));
-        let normal = shared.vector(normal, "normal of a contact");
-        let by = total([scaled(near.t.clone(), &self.axis), opposite(&scaled(self.radius.clone(), &normal))]);
-        let point = self.capsule.at.plus(by);
-        Touch { point, normal, gap, validity: Some(validity), tangent: None }
-    }
-
-    /// The same of a contact that is one of many: its tangent is along the segment.
-    fn one_of_many(&self, near: &Near, bounds: Vec<Scalar>, shared: &mut Shared<'_>) -> Touch {
-        let touch = self.touch(near, bounds, shared);
-        let along = dot(&self.axis, &touch.normal);
-        let tangent = unit(&total([self.axis.clone(), opposite(&scaled(along, &touch.normal))]), shared.at);
-        Touch { tangent: Some(tangent), ..touch }
-    }
 }

@@ -9,6 +9,7 @@ use super::super::super::pairs::{self, MOST_CONTACTS, Outline, Pair};
 use super::super::Lowering;
 use super::boxes;
 use super::capsule_on_box;
+use super::capsule_on_polytope;
 use super::closed_forms::touches;
 use super::ellipsoids;
 use super::features::Touch;
@@ -141,6 +142,10 @@ impl Lowering<'_> {
             (Kind::Sphere, false, Kind::Polytope) => {
                 let hull = self.solid(struck, span)?;
                 sphere_on_polytope::between([striking, struck], &hull, &mut self.out.definitions, at)
+            }
+            (Kind::Capsule, false, Kind::Polytope) => {
+                let hull = self.solid(struck, span)?;
+                capsule_on_polytope::between([striking, struck], &hull, &mut self.out.definitions, at)
             }
             (Kind::Capsule, false, Kind::Box | Kind::Rectangle) => {
                 capsule_on_box::between(striking, struck, &mut self.out.definitions, at)

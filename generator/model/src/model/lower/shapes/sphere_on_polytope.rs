@@ -24,8 +24,25 @@ pub fn between(
     let from = sphere.at.from(&polytope.at);
     let place: Components = std::array::from_fn(|i| dot(&from, &axis(solid.frame, i)));
     let place = keep(place, "place of the centre", shared);
+    let nearest = nearest(&solid, &place, shared);
+    let normal = shared.vector(vector(solid.frame, nearest.normal), "normal of the nearest place");
+    let radius = sphere.sizes.first().cloned().unwrap_or_else(|| integer(0));
+    let point = sphere.at.plus(opposite(&scaled(radius.clone(), &normal)));
+    vec![Touch::endless(point, normal, less(nearest.height, radius))]
+}
+
+/// What of a solid is nearest to a place.
+pub struct Nearest {
+    /// the unit vector to the place from what is nearest
+    pub normal: Components,
+    /// the distance; of a place within the solid the distance from the nearest plane of a face, which is negative
+    pub height: Scalar,
+}
+
+/// What of a solid is nearest to a place.
+pub fn nearest(solid: &Solid<'_>, place: &Components, shared: &mut Shared<'_>) -> Nearest {
     let heights: Vec<Scalar> = (solid.faces.iter())
-        .map(|face| shared.scalar(Solid::over(face, &place), "height of the centre"))
+        .map(|face| shared.scalar(Solid::over(face, place), "height of the centre"))
         .collect();
     let highest = heights.iter().cloned().reduce(greater).unwrap_or_else(|| integer(0));
     let inside = shared.scalar(step(opposite_of(highest)), "whether the centre is inside");
@@ -34,7 +51,7 @@ pub fn between(
     let mut none = integer(1);
     let mut chosen = Vec::new();
     for ((face, height), nearest) in solid.faces.iter().zip(&heights).zip(nearest_plane) {
-        let sides = face.sides.iter().map(|side| Solid::within(side, &place));
+        let sides = face.sides.iter().map(|side| Solid::within(side, place));
         let over = step(lesser(least(sides.collect()), height.clone()));
         let is_nearest = greater(over, product([inside.clone(), nearest]));
         let is_it = shared.scalar(product([none.clone(), is_nearest]), "whether a face is nearest");
@@ -44,7 +61,7 @@ pub fn between(
     // what leads to the centre from the nearest point of all edges
     let mut nearest: Option<(Scalar, Components)> = None;
     for edge in &solid.edges {
-        let from = keep(difference(&place, &edge.middle), "distance from an edge", shared);
+        let from = keep(difference(place, &edge.middle), "distance from an edge", shared);
         let along = between_bounds(inner(&from, &edge.direction), &edge.half_length);
         let along = shared.scalar(along, "place on an edge");
         let to: Components = std::array::from_fn(|i| {
@@ -75,11 +92,8 @@ pub fn between(
         let of_faces = of_faces.map(|(chosen, face)| product([chosen.clone(), face.normal[i].clone()]));
         all(of_faces.chain([of_edge]))
     });
-    let normal = shared.vector(vector(solid.frame, normal), "normal of the nearest place");
-    let radius = sphere.sizes.first().cloned().unwrap_or_else(|| integer(0));
     let of_faces =
         chosen.iter().zip(&heights).map(|(chosen, height)| product([chosen.clone(), height.clone()]));
     let height = all(of_faces.chain([product([none, distance])]));
-    let point = sphere.at.plus(opposite(&scaled(radius.clone(), &normal)));
-    vec![Touch::endless(point, normal, less(height, radius))]
+    Nearest { normal, height }
 }
