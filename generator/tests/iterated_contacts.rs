@@ -9,7 +9,9 @@ use hodograph_generator::numeric::views::{dot3, norm3, sub3};
 use hodograph_generator::numeric::{Level, State, Views};
 use hodograph_random::Random;
 
-use crate::shapes::{Pose, Said, V, along, back, compare, evaluator, model, plus, pose, random_state, said, scaled};
+use crate::shapes::{
+    Pose, Said, V, along, back, compare, evaluator, model, plus, pose, random_state, said, scaled,
+};
 
 const POSES: usize = 10_000;
 
@@ -41,7 +43,14 @@ struct Seen {
 
 impl Seen {
     /// Looks at a state at which the point and the normal of the first contact are known.
-    fn look(&mut self, m: &Mechanism, state: &State, (point, normal): (V, V), size: f64, random: &mut Random) {
+    fn look(
+        &mut self,
+        m: &Mechanism,
+        state: &State,
+        (point, normal): (V, V),
+        size: f64,
+        random: &mut Random,
+    ) {
         let found = said(m, state).unwrap_or_else(|| panic!("{state:?}"));
         let one = found[0];
         let off = norm3(sub3(one.point, point)).max(one.gap.abs()) / size;
@@ -79,7 +88,8 @@ impl Seen {
         let normal = values.vector(&contact.normal, Level::Geometry).unwrap();
         for axis in 0..3 {
             let off = (rate(&|said| said.point[axis]) - point[axis].e1).abs() / (1.0 + point[axis].e1.abs());
-            let tilt = (rate(&|said| said.normal[axis]) - normal[axis].e1).abs() / (1.0 + normal[axis].e1.abs());
+            let tilt =
+                (rate(&|said| said.normal[axis]) - normal[axis].e1).abs() / (1.0 + normal[axis].e1.abs());
             let bent = (second(&|said| said.normal[axis]) - normal[axis].e12).abs() * size;
             let bent = 1e-3 * bent / (1.0 + normal[axis].e12.abs());
             self.differences = self.differences.max(off).max(tilt).max(bent);
@@ -87,8 +97,14 @@ impl Seen {
     }
 
     fn end(&self, name: &str, most: [f64; 3]) {
-        println!("{name}: {:.1e} of places, {:.1e} of rates, {:.1e} beside differences", self.place, self.rate, self.differences);
-        assert!(self.place < most[0] && self.rate < most[1] && self.differences < most[2], "{name}: {self:?}");
+        println!(
+            "{name}: {:.1e} of places, {:.1e} of rates, {:.1e} beside differences",
+            self.place, self.rate, self.differences
+        );
+        assert!(
+            self.place < most[0] && self.rate < most[1] && self.differences < most[2],
+            "{name}: {self:?}"
+        );
     }
 }
 

@@ -113,3 +113,69 @@ shapes {{ S {{ of: A, at: P, {shape}, density: rho }} }}
         }
     }
 }
+
+/// Mass, mass centre from P, and second moments xx, yy, zz, xy, yz, zx about P of a polytope at P + 0.2 E.x with these
+/// vertices from P.
+fn of_polytope(vertices: &[[f64; 3]]) -> [f64; 10] {
+    let list: Vec<String> =
+        vertices.iter().map(|v| format!("P + 10*k*E.vec({}, {}, {})", v[0], v[1], v[2])).collect();
+    let text = format!(
+        "mechanism One;
+parameters {{ k: m = 0.1, rho: kg/m^3 = 700 }}
+coordinates {{ q1: m, q2: m, q3: m, q4: rad, q5: rad, q6: rad }}
+speeds {{ u1: m/s, u2: m/s, u3: m/s, u4: rad/s, u5: rad/s, u6: rad/s }}
+frames {{ E = N.euler(xyz, q4, q5, q6); }}
+points {{ P = O + q1*N.x + q2*N.y + q3*N.z; }}
+bodies {{ A {{ frame: E, shape: S }} }}
+shapes {{ S {{ of: A, at: P + 2*k*E.x, polytope: [{}], density: rho }} }}
+",
+        list.join(", ")
+    );
+    let source = Source::file("one.mech", text);
+    let checked = check(&source);
+    let said = render(&checked.diagnostics, &source);
+    let m = checked.mechanism.unwrap_or_else(|| panic!("{said}"));
+    assert!(said.is_empty(), "{said}");
+    let state = State::of(&m);
+    let values = evaluator(&m, &state, still(&state));
+    let number = |scalar: &Scalar| values.scalar(scalar, Level::Motion).unwrap().re;
+    let body = &m.bodies[0];
+    let mass = number(&body.mass);
+    let c = values.position(body.centre).unwrap().map(|c| c.re);
+    let [xx, yy, zz, xy, yz, zx] = body.inertia.as_ref().unwrap().components.each_ref().map(number);
+    let half = 0.5 * (xx + yy + zz);
+    let central = [half - xx, half - yy, half - zz, -xy, -yz, -zx];
+    let shift = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]].map(|[i, j]| mass * c[i] * c[j]);
+    let about = [0, 1, 2, 3, 4, 5].map(|i| central[i] + shift[i]);
+    [mass, mass * c[0], mass * c[1], mass * c[2], about[0], about[1], about[2], about[3], about[4], about[5]]
+}
+
+/// A block, and both parts into which an oblique plane cuts it.
+#[test]
+fn masses_of_polytopes_add_up() {
+    let [a, b, c] = [0.1, 0.15, 0.25];
+    let corners = [[a, b], [-a, b], [-a, -b], [a, -b]];
+    let level = |z: f64| corners.map(|[x, y]| [x + 0.02, y, z]).to_vec();
+    let cut: Vec<[f64; 3]> = corners.map(|[x, y]| [x + 0.02, y, 0.05 + 0.3 * x + 0.4 * y]).to_vec();
+    let of = |lower: &[[f64; 3]], upper: &[[f64; 3]]| of_polytope(&[lower, upper].concat());
+    let (whole, below, above) = (of(&level(-c), &level(c)), of(&level(-c), &cut), of(&cut, &level(c)));
+    let mass = 700.0 * 8.0 * a * b * c;
+    let expected = [
+        mass,
+        0.02 * mass,
+        0.0,
+        0.0,
+        mass * (a * a / 3.0 + 0.02 * 0.02),
+        mass * b * b / 3.0,
+        mass * c * c / 3.0,
+        0.0,
+        0.0,
+        0.0,
+    ];
+    for i in 0..10 {
+        assert!((whole[i] - expected[i]).abs() < 1e-13 * mass, "{i}: {whole:?} {expected:?}");
+        assert!((below[i] + above[i] - whole[i]).abs() < 1e-13 * mass, "{i}: {below:?} {above:?} {whole:?}");
+    }
+    // the parts are oblique: their products of inertia are not zero
+    assert!(below[7..].iter().all(|product| product.abs() > 1e-6), "{below:?}");
+}

@@ -91,7 +91,11 @@ fn of_segment_and_pyramid([c, a]: [V; 2], h: f64) -> Option<(V, V, f64)> {
         let n = cross3(sub3(q, p), sub3(r, p));
         let (height, slope) = (dot3(n, sub3(c, p)), dot3(n, a));
         let at = -height / slope;
-        if slope > 0.0 { to = at.min(to) } else { from = at.max(from) }
+        if slope > 0.0 {
+            to = at.min(to)
+        } else {
+            from = at.max(from)
+        }
         for i in 0..face.len() {
             let [p, q] = [i, (i + 1) % face.len()].map(|k| vertices[face[k]]);
             let way = sub3(q, p);
@@ -150,7 +154,8 @@ fn capsules_on_polytopes() {
         let views = Views::at(&m, &state).unwrap();
         let scale = 1.0 + state.speeds.iter().fold(0.0_f64, |s, u| s.max(u.abs()));
         for (contact, one) in m.contacts.iter().zip(&found) {
-            let scalar = |of: &Option<_>| of.as_ref().map(|of| views.now.scalar(of, Level::Geometry).unwrap());
+            let scalar =
+                |of: &Option<_>| of.as_ref().map(|of| views.now.scalar(of, Level::Geometry).unwrap());
             if scalar(&contact.validity).is_some_and(|validity| validity.re < 1e-9) {
                 continue;
             }

@@ -175,14 +175,16 @@ fn wedges_on_gems() {
     assert!(seen.faces.iter().all(|&count| count > 200) && seen.edges > 2000, "{seen:?}");
 }
 
-/// A crate and a table that are polytopes move as those that are boxes: thrown on the edge of the table from all sides.
-#[test]
-fn polytopes_move_as_boxes_do() {
-    let both = [model("crate_on_table"), model("crate_of_vertices")];
+/// What is thrown on a polytope moves as what is thrown on the same box: with the same number of events. The number of them
+/// all.
+fn move_alike(names: [&str; 2], middle: [f64; 3], throws: u64) -> usize {
+    let both = names.map(model);
     let mut random = hodograph_random::Random::new(0x0e11_a950_0000_0031);
     let mut events = 0;
-    for throw in 0..6 {
-        let (q, mut u) = in_space([random.between(-0.3, 0.1), 0.3, random.between(-0.2, 0.2)], &mut random);
+    for throw in 0..throws {
+        let [x, y, z] = middle;
+        let (q, mut u) =
+            in_space([random.between(x - 0.2, x + 0.2), y, random.between(z - 0.2, z + 0.2)], &mut random);
         u[1] = -1.0;
         u.iter_mut().for_each(|u| *u *= 2.0);
         let ends = both.each_ref().map(|body| {
@@ -194,8 +196,20 @@ fn polytopes_move_as_boxes_do() {
         assert!(apart < 1e-7 && ends[0].1 == ends[1].1, "{throw}: {apart:e} {} {}", ends[0].1, ends[1].1);
         events += ends[0].1;
     }
-    println!("6 throws with {events} events");
-    assert!(events > 100);
+    println!("{throws} throws with {events} events");
+    events
+}
+
+/// A crate and a table that are polytopes move as those that are boxes: thrown on the edge of the table from all sides.
+#[test]
+fn polytopes_move_as_boxes_do() {
+    assert!(move_alike(["crate_on_table", "crate_of_vertices"], [-0.1, 0.3, 0.0], 6) > 100);
+}
+
+/// So does a log: on the edge and the corner of the table.
+#[test]
+fn capsules_move_on_polytopes_as_on_boxes() {
+    assert!(move_alike(["log_on_table", "log_on_slab"], [-0.1, 0.6, 0.0], 20) > 100);
 }
 
 /// Other values of parameters may turn a polytope inside out, or leave it no volume: its faces are not those of the model

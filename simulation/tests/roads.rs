@@ -112,7 +112,8 @@ fn ellipsoids_that_are_balls_leave_each_other_where_balls_do() {
     let q = [(r + large) * angle.sin(), 0.0, (r + large) * angle.cos(), 1.0, 0.0, 0.0, 0.0];
     let mut simulation = start(&machine, &q, &[0.0; 6], surface(0.0, 0.0, Law::Newton));
     let events = run(&mut simulation, 1.0);
-    let left = events.iter().find(|event| matches!(event.kind, EventKind::LiftOff { .. })).expect("it leaves");
+    let left =
+        events.iter().find(|event| matches!(event.kind, EventKind::LiftOff { .. })).expect("it leaves");
     let before = left.time;
     let mut simulation = start(&machine, &q, &[0.0; 6], surface(0.0, 0.0, Law::Newton));
     run(&mut simulation, before);

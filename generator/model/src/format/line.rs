@@ -10,7 +10,8 @@ const LEADING_WORDS: [&str; 2] = ["about", "velocity"];
 #[derive(Debug)]
 struct Piece {
     text: String,
-    /// brackets around the place before it, if the line may be broken there
+    /// brackets around the place before it, twice, if the line may be broken there; and one within a sum, which is
+    /// broken later than the list of which it is an entry
     breakable: Option<usize>,
 }
 
@@ -71,10 +72,11 @@ fn pieces(items: &[Item<'_>]) -> Vec<Piece> {
             matches!(kind, TokenKind::Sign('+' | '-')) && before.as_ref().is_none_or(Before::awaits_value);
         let blank = before.as_ref().is_some_and(|before| blank_between(before, kind, leads));
         // a sum is broken before its signs, a list behind its commas
-        let breakable = matches!(kind, TokenKind::Sign('+' | '-')) && !leads
-            || before.as_ref().is_some_and(|before| before.kind == TokenKind::Sign(','));
+        let behind_comma = before.as_ref().is_some_and(|before| before.kind == TokenKind::Sign(','));
+        let in_sum = matches!(kind, TokenKind::Sign('+' | '-')) && !leads;
+        let breakable = (behind_comma || in_sum).then_some(2 * depth + usize::from(!behind_comma));
         let text = if blank { format!(" {}", item.text) } else { item.text.to_owned() };
-        pieces.push(Piece { text, breakable: breakable.then_some(depth) });
+        pieces.push(Piece { text, breakable });
         if let TokenKind::Open(_) = kind {
             depth += 1;
         }

@@ -125,9 +125,15 @@ pub fn possible(striking: Kind) -> Vec<String> {
     out
 }
 
-/// The polytopes whose edges tell how many contacts a pair has.
+/// The polytopes whose edges tell how many contacts a pair has, and those from which a body takes its mass.
 pub fn need_hulls(tree: &Tree) -> Vec<&str> {
-    let mut out: Vec<&str> = Vec::new();
+    let of_bodies = tree.bodies.iter().flat_map(|body| &body.fields);
+    let of_bodies = of_bodies.filter(|field| field.name.text == "shape").filter_map(|field| {
+        let ExprKind::Name(name) = &field.value.kind else { return None };
+        let shape = tree.shapes.iter().find(|shape| shape.name.text == *name)?;
+        (outline(shape, &Hulls::new())?.kind == Kind::Polytope).then_some(name.as_str())
+    });
+    let mut out: Vec<&str> = of_bodies.collect();
     for pair in tree.contacts.iter().filter_map(pair) {
         let shapes = [pair.striking, pair.struck.text.as_str()];
         let kinds = shapes.map(|name| {

@@ -1,9 +1,10 @@
 //! Gives bodies the mass properties of their shapes.
 
-use super::super::super::mechanism::{Anchor, Body, FrameId, Inertia, PointId, Scalar, Shape, Vector};
+use super::super::super::mechanism::{Anchor, Body, FrameId, Inertia, Kind, PointId, Scalar, Shape, Vector};
 use super::super::super::names::Symbol;
 use super::super::Lowering;
 use super::algebra::total;
+use super::mass_of_polytope;
 use super::masses::mass_properties;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::number::Number;
@@ -114,7 +115,15 @@ impl Lowering<'_> {
             self.report(error.help(format!("write `{text} {{ of: {}, .. }}`", record.name.text)));
             return None;
         }
-        let properties = match mass_properties(&shape) {
+        let of_polytope = match (&shape.density, shape.kind) {
+            (Some(density), Kind::Polytope) => {
+                let hull = self.solid(&shape, name.span)?;
+                let definitions = &mut self.out.definitions;
+                Some(mass_of_polytope::mass_properties(&shape, &hull, density, definitions, name.span))
+            }
+            _ => None,
+        };
+        let properties = match of_polytope.map_or_else(|| mass_properties(&shape), Ok) {
             Ok(properties) => properties,
             Err(why) => {
                 let message = format!("the mass of `{text}` is not known: {why}");
@@ -127,8 +136,7 @@ impl Lowering<'_> {
                 return None;
             }
         };
-        let zero = || Scalar::Number(Number::integer(0));
-        let [xx, yy, zz] = properties.inertia;
+        let ([xx, yy, zz], [xy, yz, zx]) = (properties.inertia, properties.products);
         // of a ball the components are the same along all axes, and a frame made by `spin` has none
         let axes = if self.frames[properties.frame.0].no_axes { FrameId::N } else { properties.frame };
         let by = total([shape.at.by.clone(), properties.centre]);
@@ -159,7 +167,7 @@ impl Lowering<'_> {
         let body = &mut self.out.bodies[i];
         body.mass = properties.mass;
         body.inertia = Some(Inertia {
-            components: Box::new([xx, yy, zz, zero(), zero(), zero()]),
+            components: Box::new([xx, yy, zz, xy, yz, zx]),
             frame: axes,
             about: None,
             span: field.value.span,

@@ -27,7 +27,7 @@ const NO_ANGLE: (i64, i64) = (1, 1_000_000_000_000_000_000);
 
 /// The contacts: vertices of the first box on the second, those of the second on the first, and edges on edges.
 pub fn between(first: &Shape, second: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [first, second], at };
+    let mut shared = Shared::pair([first, second], definitions, at);
     let pair = BoxPair::of(first, second, &mut shared);
     let mut touches: Vec<Touch> = corner_signs().map(|signs| pair.strikes(&signs, &mut shared)).collect();
     touches.extend(corner_signs().map(|signs| pair.is_struck(&signs, &mut shared)));

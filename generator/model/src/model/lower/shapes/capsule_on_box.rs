@@ -24,7 +24,7 @@ pub const ON_RECTANGLE: usize = 2 + 4;
 
 /// The contacts: ends of the capsule, then edges of the box along x, y and z, then its vertices.
 pub fn between(capsule: &Shape, solid: &Shape, definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [capsule, solid], at };
+    let mut shared = Shared::pair([capsule, solid], definitions, at);
     let pair = Pair::of(capsule, solid, &mut shared);
     let mut touches: Vec<Touch> = [1, -1].map(|end| pair.end(end, &mut shared)).into();
     if solid.kind == Kind::Box {
@@ -214,5 +214,4 @@ impl<'s> Pair<'s> {
             _ => self.touch(&near, bounds, shared),
         }
     }
-
 }

@@ -27,7 +27,7 @@ pub fn between(
     definitions: &mut Vec<Definition>,
     at: Span,
 ) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [capsule, polytope], at };
+    let mut shared = Shared::pair([capsule, polytope], definitions, at);
     let shared = &mut shared;
     let solid = Solid::of(polytope, hull, shared);
     let pair = Pair::of(capsule, solid, shared);
@@ -67,7 +67,8 @@ impl Crossing {
         let square_of = shared.scalar(inner(&cross, &cross), "squared sine");
         let parallel = square(ratio(PARALLEL.0, PARALLEL.1));
         let divisor = shared.scalar(greater(square_of.clone(), parallel.clone()), "squared sine");
-        let crosses = shared.scalar(step(less(square_of.clone(), parallel)), "whether an edge is not parallel");
+        let crosses =
+            shared.scalar(step(less(square_of.clone(), parallel)), "whether an edge is not parallel");
         let from = keep(difference(&segment.d, &edge.middle), "distance from an edge", shared);
         Crossing { cosine, square: square_of, divisor, crosses, from }
     }
@@ -111,7 +112,8 @@ impl<'s> Pair<'s> {
                 opposite_of(product([turned.clone(), left])),
                 opposite_of(product([turned.clone(), right])),
             );
-            let supports = product([integer(SHARP), quotient(of_both, sine.clone(), shared.at), self.extent.clone()]);
+            let supports =
+                product([integer(SHARP), quotient(of_both, sine.clone(), shared.at), self.extent.clone()]);
             let height = quotient(product([turned, inner(&cross, &crossing.from)]), sine, shared.at);
             let counts = lesser(supports, crossed(crossing.square.clone(), &self.extent));
             apart.push(shared.scalar(lesser(height, counts), "height over an edge"));
@@ -166,8 +168,9 @@ impl<'s> Pair<'s> {
         let e = &edge.direction;
         let along_edge = shared.scalar(inner(&crossing.from, e), "place of the middle along an edge");
         // what is left of w at the edge's line
-        let beside: Components =
-            std::array::from_fn(|i| less(crossing.from[i].clone(), product([along_edge.clone(), e[i].clone()])));
+        let beside: Components = std::array::from_fn(|i| {
+            less(crossing.from[i].clone(), product([along_edge.clone(), e[i].clone()]))
+        });
         let beside = keep(beside, "distance from the line of an edge", shared);
         let across = shared.scalar(inner(&beside, &self.a), "distance from an edge along the segment");
         let free = quotient(opposite_of(across.clone()), crossing.divisor.clone(), shared.at);

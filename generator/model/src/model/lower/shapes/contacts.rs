@@ -169,8 +169,8 @@ impl Lowering<'_> {
         self.hulls.get(&shape.name).map_or(Err(NoHull::Unknown), |hull| hull.as_ref().map_err(|why| *why))
     }
 
-    /// The hull of a box or polytope, whose contacts follow from its faces and edges.
-    fn solid(&mut self, shape: &Shape, span: Span) -> Option<Hull> {
+    /// The hull of a box or polytope, whose contacts or mass follow from its faces and edges.
+    pub(super) fn solid(&mut self, shape: &Shape, span: Span) -> Option<Hull> {
         if shape.kind == Kind::Box {
             return Hull::of(&corners_of_a_cube()).ok();
         }

@@ -23,7 +23,7 @@ pub fn under_sphere(
     definitions: &mut Vec<Definition>,
     at: Span,
 ) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [sphere, ellipsoid], at };
+    let mut shared = Shared::pair([sphere, ellipsoid], definitions, at);
     let shared = &mut shared;
     let d = sphere.at.from(&ellipsoid.at);
     let place = keep(axes_of(ellipsoid).each_ref().map(|e| dot(&d, e)), "place of the centre", shared);
@@ -37,7 +37,8 @@ pub fn under_sphere(
     // the root of the sum of squares of l y/(t + l^2), and the next t
     let newton = |[t]: [Scalar; 1], shared: &mut Shared<'_>| {
         let divisors = keep(divisors(&squares, &t), "divisor", shared);
-        let terms: Components = std::array::from_fn(|i| quotient(stretched[i].clone(), divisors[i].clone(), at));
+        let terms: Components =
+            std::array::from_fn(|i| quotient(stretched[i].clone(), divisors[i].clone(), at));
         let terms = keep(terms, "term", shared);
         let sum = shared.scalar(inner(&terms, &terms), "sum of squares");
         let slope = all((0..3).map(|i| quotient(square(terms[i].clone()), divisors[i].clone(), at)));
@@ -52,7 +53,8 @@ pub fn under_sphere(
     };
     let across = keep(across, "normal, not of unit length,", shared);
     let on_surface = all((0..3).map(|i| product([squares[i].clone(), square(across[i].clone())])));
-    let (is_found, what) = (is_small(less(on_surface, integer(1)), integer(1)), "whether the nearest place is found");
+    let (is_found, what) =
+        (is_small(less(on_surface, integer(1)), integer(1)), "whether the nearest place is found");
     let found = shared.scalar(is_found, what);
     let length = root(inner(&across, &across));
     let length = shared.scalar(quotient(length, found, at), "length of the normal");
@@ -64,12 +66,8 @@ pub fn under_sphere(
 }
 
 /// The contact of an ellipsoid on another: by how much both must be scaled about their centres to touch.
-pub fn between(
-    [first, second]: [&Shape; 2],
-    definitions: &mut Vec<Definition>,
-    at: Span,
-) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [first, second], at };
+pub fn between([first, second]: [&Shape; 2], definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
+    let mut shared = Shared::pair([first, second], definitions, at);
     let shared = &mut shared;
     let frame = axes_frame(second);
     let pair = Ellipsoids::of(first, second, shared);
@@ -177,13 +175,18 @@ impl Ellipsoids {
 
     fn at(&self, share: &Scalar, shared: &mut Shared<'_>) -> AtShare {
         let rest = shared.scalar(less(integer(1), share.clone()), "share of the first");
-        let mut sum = self.first.each_ref().map(|row| row.each_ref().map(|a| product([rest.clone(), a.clone()])));
+        let mut sum =
+            self.first.each_ref().map(|row| row.each_ref().map(|a| product([rest.clone(), a.clone()])));
         for (i, row) in sum.iter_mut().enumerate() {
             row[i] = all([row[i].clone(), product([share.clone(), self.second[i].clone()])]);
         }
         let sum = sum.map(|row| keep(row, "sum of both matrices", shared));
         let inverse = inverse(&sum, self.at, shared);
-        let along = keep(inverse.each_ref().map(|row| inner(row, &self.apart)), "normal, not of unit length,", shared);
+        let along = keep(
+            inverse.each_ref().map(|row| inner(row, &self.apart)),
+            "normal, not of unit length,",
+            shared,
+        );
         let [first, second] =
             [self.first(&along), self.second(&along)].map(|v| keep(v, "point, not scaled,", shared));
         let reaches =
@@ -197,7 +200,8 @@ impl Ellipsoids {
         let rest = shared.scalar(here.rest(share), "difference of the reaches");
         let change: Components = std::array::from_fn(|i| less(here.first[i].clone(), here.second[i].clone()));
         let change = keep(change, "difference of the points", shared);
-        let change = keep(here.inverse.each_ref().map(|row| inner(row, &change)), "change of the normal", shared);
+        let change =
+            keep(here.inverse.each_ref().map(|row| inner(row, &change)), "change of the normal", shared);
         let [own, other] = &here.reaches;
         // (1 - s)/h_2 - s/h_1 is almost linear; times h_1 h_2
         let of = |v: &Components, [reach, other]: [&Scalar; 2], share: Scalar| {
@@ -220,10 +224,7 @@ fn inverse(a: &[Components; 3], at: Span, shared: &mut Shared<'_>) -> [Component
     let mut out: [Components; 3] = std::array::from_fn(|_| [0, 1, 2].map(integer));
     let cofactor = |i: usize, j: usize| {
         let ([k, l], [m, n]) = (others(i), others(j));
-        less(
-            product([a[k][m].clone(), a[l][n].clone()]),
-            product([a[k][n].clone(), a[l][m].clone()]),
-        )
+        less(product([a[k][m].clone(), a[l][n].clone()]), product([a[k][n].clone(), a[l][m].clone()]))
     };
     for i in 0..3 {
         for j in i..3 {

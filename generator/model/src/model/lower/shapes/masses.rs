@@ -9,13 +9,15 @@ pub struct MassProperties {
     pub mass: Scalar,
     /// xx, yy, zz about the mass centre, kg m^2
     pub inertia: [Scalar; 3],
+    /// xy, yz, zx of the inertia matrix, with a plus sign
+    pub products: [Scalar; 3],
     /// the frame of these
     pub frame: FrameId,
     /// from the shape's place to the mass centre
     pub centre: Vector,
 }
 
-/// The mass properties; the error says what stands against it.
+/// The mass properties of a shape that is no polytope; the error says what stands against it.
 pub fn mass_properties(shape: &Shape) -> Result<MassProperties, &'static str> {
     let density = shape.density.clone().ok_or("it has no density")?;
     let times = |factors: Vec<Scalar>| Scalar::Mul(factors);
@@ -34,6 +36,7 @@ pub fn mass_properties(shape: &Shape) -> Result<MassProperties, &'static str> {
         let terms = terms.into_iter().map(|(n, d, a, b)| product([ratio(n, d), a.clone(), b.clone()]));
         product([m.clone(), Scalar::Add(terms.collect())])
     };
+    let products = || [0, 0, 0].map(integer);
     let upright = |mass: Scalar, across: Scalar, along: Scalar, centre: Vector| {
         let axis = shape.axis.as_ref().and_then(as_axis);
         let (frame, axis) = axis.ok_or("its axis is no axis of a frame, such as `B.z`")?;
@@ -42,28 +45,34 @@ pub fn mass_properties(shape: &Shape) -> Result<MassProperties, &'static str> {
             Axis::Y => [across.clone(), along, across],
             Axis::Z => [across.clone(), across, along],
         };
-        Ok(MassProperties { mass, inertia, frame, centre })
+        Ok(MassProperties { mass, inertia, products: products(), frame, centre })
     };
     match (shape.kind, &shape.sizes[..]) {
         (Kind::Sphere, [r]) => {
             let mass = of_round(4, 3, &[r, r, r]);
             let inertia = moment(&mass, vec![(2, 5, r, r)]);
             let inertia = [inertia.clone(), inertia.clone(), inertia];
-            Ok(MassProperties { mass, inertia, frame: shape.frame, centre: Vector::Zero })
+            Ok(MassProperties {
+                mass,
+                inertia,
+                products: products(),
+                frame: shape.frame,
+                centre: Vector::Zero,
+            })
         }
         (Kind::Ellipsoid, [a, b, c]) => {
             let mass = of_round(4, 3, &[a, b, c]);
             let about = |p, q| moment(&mass, vec![(1, 5, p, p), (1, 5, q, q)]);
             let inertia = [about(b, c), about(c, a), about(a, b)];
             let frame = shape.axes.unwrap_or(shape.frame);
-            Ok(MassProperties { inertia, mass, frame, centre: Vector::Zero })
+            Ok(MassProperties { inertia, products: products(), mass, frame, centre: Vector::Zero })
         }
         (Kind::Box, [a, b, c]) => {
             let mass = of_volume(1, 1, &[a, b, c]);
             let about = |p, q| moment(&mass, vec![(1, 12, p, p), (1, 12, q, q)]);
             let inertia = [about(b, c), about(c, a), about(a, b)];
             let frame = shape.axes.unwrap_or(shape.frame);
-            Ok(MassProperties { inertia, mass, frame, centre: Vector::Zero })
+            Ok(MassProperties { inertia, products: products(), mass, frame, centre: Vector::Zero })
         }
         (Kind::Cylinder, [r, l]) => {
             let mass = of_round(1, 1, &[r, r, l]);
@@ -99,7 +108,6 @@ pub fn mass_properties(shape: &Shape) -> Result<MassProperties, &'static str> {
         }
         (Kind::Disc, _) => Err("a disc is a thin rim without volume; a wheel of some width is a cylinder"),
         (Kind::Rectangle, _) => Err("a rectangle has no volume: the mass of a block is that of a `box`"),
-        (Kind::Polytope, _) => Err("the inertia of a polytope is not compiled: state mass and inertia"),
         _ => Err("it has no end"),
     }
 }

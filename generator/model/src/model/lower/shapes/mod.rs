@@ -13,6 +13,7 @@ mod faces;
 mod features;
 mod heights;
 mod iterations;
+mod mass_of_polytope;
 mod masses;
 mod polytopes;
 mod segment;

@@ -37,7 +37,7 @@ pub fn between(
     definitions: &mut Vec<Definition>,
     at: Span,
 ) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes, at };
+    let mut shared = Shared::pair(shapes, definitions, at);
     let solids = [0, 1].map(|body| Solid::of(shapes[body], hulls[body], &mut shared));
     let pair = Pair::of(solids, &mut shared);
     let [first, second] = &pair.solids;

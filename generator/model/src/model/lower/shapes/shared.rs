@@ -1,19 +1,30 @@
-//! Expressions that several contacts of a pair share: definitions without a name in the model.
+//! Expressions that several contacts of a pair of shapes share, or the mass properties of a body: definitions without a
+//! name in the model.
 
 use crate::model::mechanism::{Definition, DefinitionId, DefinitionValue, Scalar, Shape, Vector};
 use crate::span::Span;
 
-/// The definitions of a pair of shapes.
+/// The definitions of a pair of shapes, or of one.
 pub struct Shared<'d> {
     /// those of the mechanism
-    pub definitions: &'d mut Vec<Definition>,
-    /// the pair
-    pub shapes: [&'d Shape; 2],
+    definitions: &'d mut Vec<Definition>,
+    /// what they are of
+    of: String,
     /// where it is stated
     pub at: Span,
 }
 
-impl Shared<'_> {
+impl<'d> Shared<'d> {
+    /// Those of a pair of shapes.
+    pub fn pair([first, second]: [&Shape; 2], definitions: &'d mut Vec<Definition>, at: Span) -> Self {
+        Shared { definitions, of: format!("`{}` and `{}`", first.name, second.name), at }
+    }
+
+    /// Those of one shape.
+    pub fn one(shape: &Shape, definitions: &'d mut Vec<Definition>, at: Span) -> Self {
+        Shared { definitions, of: format!("`{}`", shape.name), at }
+    }
+
     /// Gives an expression to all that use it.
     pub fn scalar(&mut self, value: Scalar, what: &str) -> Scalar {
         Scalar::Definition(self.keep(DefinitionValue::Scalar(value), what))
@@ -25,8 +36,7 @@ impl Shared<'_> {
     }
 
     fn keep(&mut self, value: DefinitionValue, what: &str) -> DefinitionId {
-        let [first, second] = self.shapes;
-        let name = format!("{what} of `{}` and `{}`", first.name, second.name);
+        let name = format!("{what} of {}", self.of);
         self.definitions.push(Definition { name, docs: String::new(), value, span: self.at });
         DefinitionId(self.definitions.len() - 1)
     }

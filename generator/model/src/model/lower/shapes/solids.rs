@@ -124,6 +124,20 @@ fn is_hull(vertices: &[Components], hull: &Hull, shared: &mut Shared<'_>) -> Sca
     step(least(bounds))
 }
 
+/// The vertices of a polytope, from its place along the axes of its frame, as long as they have this hull.
+pub fn vertices_of(shape: &Shape, hull: &Hull, shared: &mut Shared<'_>) -> Vec<Components> {
+    let axes = axes_of(shape);
+    let from = shape.vertices.iter().map(|vertex| vertex.from(&shape.at));
+    let vertices: Vec<Components> =
+        from.map(|from| axes.each_ref().map(|e| shared.scalar(dot(&from, e), "vertex"))).collect();
+    let sound = is_hull(&vertices, hull, shared);
+    let sound = shared.scalar(sound, "whether the polytope is convex");
+    vertices
+        .into_iter()
+        .map(|v| keep(parts(v, &sound, shared), "vertex, while all are convex,", shared))
+        .collect()
+}
+
 /// The vertices of a box as numbers, in their order: its hull is that of every box.
 pub fn corners_of_a_cube() -> Vec<[f64; 3]> {
     corner_signs().map(|signs| signs.map(|sign| if sign < 0 { -1.0 } else { 1.0 })).collect()
@@ -138,16 +152,7 @@ impl<'s> Solid<'s> {
             let halves = [0, 1, 2].map(|i| shape.sizes.get(i).map_or(integer(0), half));
             corner_signs().map(|signs| std::array::from_fn(|i| signed(signs[i], halves[i].clone()))).collect()
         } else {
-            let axes = axes_of(shape);
-            let from = shape.vertices.iter().map(|vertex| vertex.from(&shape.at));
-            let vertices: Vec<Components> =
-                from.map(|from| axes.each_ref().map(|e| shared.scalar(dot(&from, e), "vertex"))).collect();
-            let sound = is_hull(&vertices, hull, shared);
-            let sound = shared.scalar(sound, "whether the polytope is convex");
-            vertices
-                .into_iter()
-                .map(|v| keep(parts(v, &sound, shared), "vertex, while all are convex,", shared))
-                .collect()
+            vertices_of(shape, hull, shared)
         };
         // of a box they are along its axes
         let along_axis = |[a, b]: [usize; 2]| {

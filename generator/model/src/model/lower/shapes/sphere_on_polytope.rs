@@ -18,7 +18,7 @@ pub fn between(
     definitions: &mut Vec<Definition>,
     at: Span,
 ) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [sphere, polytope], at };
+    let mut shared = Shared::pair([sphere, polytope], definitions, at);
     let shared = &mut shared;
     let solid = Solid::of(polytope, hull, shared);
     let from = sphere.at.from(&polytope.at);

@@ -18,10 +18,12 @@ const FOUND: (i64, i64) = (1, 1_000_000_000);
 
 /// The contact; none for a surface whose slopes have no slope.
 pub fn between([sphere, surface]: [&Shape; 2], definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
-    let mut shared = Shared { definitions, shapes: [sphere, surface], at };
+    let mut shared = Shared::pair([sphere, surface], definitions, at);
     let shared = &mut shared;
     let touch = match surface.kind {
-        Kind::Curve => Ground::<1>::of(sphere, surface, at, shared).map(|ground| ground.touch(sphere, shared)),
+        Kind::Curve => {
+            Ground::<1>::of(sphere, surface, at, shared).map(|ground| ground.touch(sphere, shared))
+        }
         _ => Ground::<2>::of(sphere, surface, at, shared).map(|ground| ground.touch(sphere, shared)),
     };
     touch.into_iter().collect()
@@ -80,7 +82,8 @@ impl<'s, const N: usize> Ground<'s, N> {
         let squares = slopes.iter().map(|slope| square(slope.clone()));
         let steep = shared.scalar(all(std::iter::once(integer(1)).chain(squares)), "steepness");
         let length = shared.scalar(root(steep.clone()), "steepness");
-        let reach = shared.scalar(quotient(self.radius.clone(), length.clone(), self.at), "height of the centre");
+        let reach =
+            shared.scalar(quotient(self.radius.clone(), length.clone(), self.at), "height of the centre");
         let mut at = [integer(0), integer(0)];
         for (i, at) in at.iter_mut().enumerate().take(N) {
             let there = all([self.place[i].clone(), product([reach.clone(), slopes[i].clone()])]);
@@ -97,7 +100,9 @@ impl<'s, const N: usize> Ground<'s, N> {
     /// Newton's matrix 1 - H D: H has the second derivatives of the height, D is how the place changes with slopes.
     fn matrix(&self, foot: &Foot<N>, shared: &mut Shared<'_>) -> [[Scalar; N]; N] {
         let curvatures: [[Scalar; N]; N] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| shared.scalar(self.curvatures[i][j].at(&foot.at), "curvature of the ground"))
+            std::array::from_fn(|j| {
+                shared.scalar(self.curvatures[i][j].at(&foot.at), "curvature of the ground")
+            })
         });
         let reach = quotient(self.radius.clone(), foot.length.clone(), self.at);
         let reach = shared.scalar(reach, "height of the centre");
@@ -174,7 +179,8 @@ impl<'s, const N: usize> Ground<'s, N> {
         let steepest = total(std::iter::once(self.up.clone()).chain(terms));
         let normal = scaled(quotient(integer(1), length.clone(), self.at), &steepest);
         let normal = shared.vector(normal, "normal of the ground");
-        let highest = all([self.height.value.at(&foot.at), quotient(self.radius.clone(), length.clone(), self.at)]);
+        let highest =
+            all([self.height.value.at(&foot.at), quotient(self.radius.clone(), length.clone(), self.at)]);
         let gap = quotient(less(self.level.clone(), highest), length, self.at);
         let point = sphere.at.plus(opposite(&scaled(self.radius.clone(), &normal)));
         Touch::endless(point, normal, gap)
@@ -185,10 +191,7 @@ impl<'s, const N: usize> Ground<'s, N> {
 fn determinant<const N: usize>(a: &[[Scalar; N]; N]) -> Scalar {
     match N {
         1 => a[0][0].clone(),
-        _ => less(
-            product([a[0][0].clone(), a[1][1].clone()]),
-            product([a[0][1].clone(), a[1][0].clone()]),
-        ),
+        _ => less(product([a[0][0].clone(), a[1][1].clone()]), product([a[0][1].clone(), a[1][0].clone()])),
     }
 }
 
