@@ -25,8 +25,8 @@ pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagn
         if found.iter().any(|d| places.contains(&d.primary.span)) {
             continue;
         }
-        // beside a face that ends a gap has another rate
-        let strange = if contact.validity.is_some() { None } else { strange(m, contact, gap, seen) };
+        // the gap of shapes follows from them; beside a face that ends it has another rate
+        let strange = if contact.shapes.is_some() { None } else { strange(m, contact, gap, seen) };
         match strange {
             Some(diagnostic) => out.push(diagnostic),
             None => {

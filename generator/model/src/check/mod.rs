@@ -10,6 +10,7 @@ pub mod coupled;
 mod exact;
 mod finite;
 mod gaps;
+mod hollows;
 mod hulls;
 mod independent_constraints;
 mod loads;

@@ -4,8 +4,8 @@
 use super::exact::{divisors, enclosures};
 use super::states::Seen;
 use super::{
-    bodies, body_points, configuration, contacts, coupled, finite, gaps, independent_constraints, loads,
-    loops, motion, shapes, states, unit_vectors, vector_constraints,
+    bodies, body_points, configuration, contacts, coupled, finite, gaps, hollows, independent_constraints,
+    loads, loops, motion, shapes, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
@@ -151,6 +151,7 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
         out.extend(loads::loads(m, &seen));
         out.extend(loops::open_at_the_start(m));
         out.extend(finite::at_the_start(m));
+        out.extend(hollows::narrow(m));
     }
     out
 }

@@ -130,4 +130,5 @@ codes! {
     KEPT_BY_VALUES = "W013", "a configuration that is kept with some values only";
     NO_GAP = "W014", "a contact that no simulation sees";
     NO_START = "W015", "a start without numbers";
+    NARROW = "W016", "a sphere that is larger than a hollow";
 }

@@ -22,10 +22,9 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: PAIR,
-        text: "Contacts are compiled between pairs of shapes whose nearest points have a closed form: everything \
-            convex on a plane, a sphere on (or in) a sphere, capsule, cylinder or box, and on a disc or torus, \
-            a capsule on a capsule or a box, boxes and polytopes on each other, a sphere on a polytope, the vertices of a box or polytope on a \
-            surface, and, in a mechanism that moves in a plane, a capsule or a rectangle on a rectangle. What strikes stands first. The faces of a \
+        text: "Contacts are compiled between these pairs of shapes: everything convex on a plane, a sphere on (or in) a sphere, \
+            capsule, cylinder or box, and on a disc, torus, cone, ellipsoid, polytope, surface or curve, a capsule on a capsule, a box or a \
+            polytope, boxes and polytopes on each other, an ellipsoid on an ellipsoid, the vertices of a box or polytope on a surface, and, in a mechanism that moves in a plane, a capsule or a rectangle on a rectangle. What strikes stands first. The faces of a \
             polytope are those of the convex hull of its points, at the values that the model gives: each point must be a vertex, not all may be in \
             one plane, and a pair may have 256 contacts at most. Other pairs whose edges and faces end are not compiled: place spheres at the \
             corners that meet, or state points, normals and gaps.",

@@ -157,4 +157,18 @@ pub(super) const TABLE: &[Explanation] = &[
             loads { gravity: -g*N.y; torque on Rod: 0.01*m*g*l/q1*N.z; }",
         ),
     },
+    Explanation {
+        code: NARROW,
+        text: "A sphere on a surface or a curve has one contact, where it would first touch if it came down. In a \
+            hollow that is more curved than the sphere it touches at several places, of which one contact knows one. \
+            The ground is looked at up to 20 radii around the start.",
+        wrong: Some(
+            "shapes { Knob { of: Rod, at: P, sphere: l/5 }, Wall { at: O - 2*l*N.y, curve: l/10*sin(20*x/l)^2 } }\n\
+            contacts { tip { Knob on Wall } }",
+        ),
+        right: Some(
+            "shapes { Knob { of: Rod, at: P, sphere: l/20 }, Wall { at: O - 2*l*N.y, curve: l/10*sin(2*x/l)^2 } }\n\
+            contacts { tip { Knob on Wall } }",
+        ),
+    },
 ];

@@ -21,10 +21,21 @@ impl Height {
 impl Height {
     /// The height at a place, m: an expression of parameters. `None` if the place is no number.
     pub fn value_at(&self, place: [f64; 2]) -> Option<Scalar> {
-        let number = |x: f64| num_rational::BigRational::from_float(x).map(|x| Scalar::Number(Number(x)));
-        let [x, y] = place.map(number);
-        Some(self.value.at(&[x?, y?]))
+        Some(self.value.at(&numbers(place)?))
     }
+
+    /// The slopes at a place: expressions of parameters. `None` if the place is no number.
+    pub fn slopes_at(&self, place: [f64; 2]) -> Option<[Scalar; 2]> {
+        let place = numbers(place)?;
+        Some(self.slopes.each_ref().map(|slope| slope.at(&place)))
+    }
+}
+
+/// A place as numbers.
+fn numbers(place: [f64; 2]) -> Option<[Scalar; 2]> {
+    let number = |x: f64| num_rational::BigRational::from_float(x).map(|x| Scalar::Number(Number(x)));
+    let [x, y] = place.map(number);
+    Some([x?, y?])
 }
 
 impl Scalar {
