@@ -142,7 +142,7 @@ fn chain(links: usize, inertia: &str) -> String {
     )
 }
 
-/// A large mechanism is looked at in numbers too; one with more than 128 speeds is refused here
+/// A large mechanism is looked at in numbers too; one with more than 256 speeds is refused here
 /// already.
 #[test]
 fn the_largest_mechanism() {
@@ -156,7 +156,7 @@ fn the_largest_mechanism() {
     let checked = check(&Source::file("chain.mech", chain(64, "[J, J, 3*J]")));
     assert!(checked.diagnostics.len() == 64 && checked.diagnostics.iter().all(|d| d.code == codes::INERTIA));
     assert!(begun.elapsed() < Duration::from_secs(600), "{:?}", begun.elapsed());
-    refused("129 speeds", chain(129, "[J, J, J]"), codes::TOO_LARGE);
+    refused("257 speeds", chain(257, "[J, J, J]"), codes::TOO_LARGE);
 }
 
 /// What is not looked at is said.

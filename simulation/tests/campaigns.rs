@@ -184,25 +184,55 @@ fn boxes() {
 }
 
 /// Logs thrown on the edges and the corner of a table, half of them flat and slowly.
+fn throw_log(m: &InterpretedMechanism, start: &mut Start, random: &mut Random) {
+    let flat = random.below(2) == 0;
+    start.set(m, "x", random.between(-0.4, 0.2));
+    start.set(m, "y", if flat { random.between(0.06, 0.1) } else { 0.5 });
+    start.set(m, "z", random.between(0.5, 1.1));
+    turn(m, start, random, ["e0", "e1", "e2", "e3"], None);
+    if flat {
+        let half = random.between(-3.0, 3.0);
+        ["e0", "e1", "e2", "e3"].into_iter().for_each(|name| start.set(m, name, 0.0));
+        start.set(m, "e0", half.cos());
+        start.set(m, "e2", half.sin());
+    }
+    start.speeds.fill(0.0);
+    let [linear, angular] = if flat { [0.5, 1.0] } else { [1.0, 6.0] };
+    speeds(m, start, random, linear, angular);
+}
+
 #[test]
 fn logs() {
+    campaign(&Family::new("log_on_table", 1.5, [1.0, 0.7], throw_log), 0..20);
+}
+
+#[test]
+fn logs_on_a_polytope() {
+    campaign(&Family::new("log_on_slab", 1.5, [1.0, 0.7], throw_log), 0..5);
+}
+
+/// Eggs thrown on a rock from above.
+#[test]
+fn eggs() {
     let throw = |m: &InterpretedMechanism, start: &mut Start, random: &mut Random| {
-        let flat = random.below(2) == 0;
-        start.set(m, "x", random.between(-0.4, 0.2));
-        start.set(m, "y", if flat { random.between(0.06, 0.1) } else { 0.5 });
-        start.set(m, "z", random.between(0.5, 1.1));
+        start.set(m, "x", random.between(-0.4, 0.4));
+        start.set(m, "y", random.between(-0.2, 0.2));
+        start.set(m, "z", random.between(0.5, 0.7));
         turn(m, start, random, ["e0", "e1", "e2", "e3"], None);
-        if flat {
-            let half = random.between(-3.0, 3.0);
-            ["e0", "e1", "e2", "e3"].into_iter().for_each(|name| start.set(m, name, 0.0));
-            start.set(m, "e0", half.cos());
-            start.set(m, "e2", half.sin());
-        }
-        start.speeds.fill(0.0);
-        let [linear, angular] = if flat { [0.5, 1.0] } else { [1.0, 6.0] };
-        speeds(m, start, random, linear, angular);
+        speeds(m, start, random, 1.0, 20.0);
     };
-    campaign(&Family::new("log_on_table", 1.5, [1.0, 0.7], throw), 0..20);
+    campaign(&Family::new("egg_on_egg", 1.0, [1.0, 0.8], throw), 0..5);
+}
+
+/// Wheels thrown on a road in a plane.
+#[test]
+fn wheels_on_a_road() {
+    let throw = |m: &InterpretedMechanism, start: &mut Start, random: &mut Random| {
+        start.set(m, "x", random.between(-2.0, 2.0));
+        start.set(m, "y", random.between(0.3, 0.8));
+        speeds(m, start, random, 2.0, 10.0);
+    };
+    campaign(&Family::new("ball_on_road", 4.0, [1.0, 0.8], throw), 0..10);
 }
 
 /// Crates thrown on the edges and the corner of a table.

@@ -19,7 +19,7 @@ pub use readable::Readable;
 
 /// Most speeds that a mechanism may have, dependent ones included. Nothing overflows beyond; but programs of the
 /// mass matrix grow with the square of their number, and checks in numbers take time with its cube.
-pub const MOST_SPEEDS: usize = 128;
+pub const MOST_SPEEDS: usize = 256;
 /// Most coordinates: a quaternion for each speed.
 pub const MOST_COORDINATES: usize = 4 * MOST_SPEEDS;
 
