@@ -4,7 +4,7 @@
 
 use super::algebra::*;
 use super::features::{Touch, axes_of};
-use super::iterations::{either, solved};
+use super::iterations::{Solution, either, is_found, solved};
 use super::separation::others;
 use super::shared::Shared;
 use super::solids::{Components, inner, keep, vector};
@@ -14,9 +14,6 @@ use crate::span::Span;
 /// Steps of the iterations: they suffice for semi-axes in a ratio of 1 to 100, and some more.
 const STEPS_OF_SPHERE: usize = 8;
 const STEPS: usize = 10;
-/// What is left of an equation, relative to its terms, if its solution is found.
-const FOUND: (i64, i64) = (1, 1_000_000_000);
-
 /// The contact of a sphere on an ellipsoid: the distance of its centre.
 pub fn under_sphere(
     [sphere, ellipsoid]: [&Shape; 2],
@@ -45,17 +42,17 @@ pub fn under_sphere(
         let excess = less(root(sum.clone()), integer(1));
         [all([t, quotient(product([excess, sum]), slope, at)])]
     };
-    let [t] = solved([start], STEPS_OF_SPHERE, newton, newton, "multiplier of the nearest place", shared);
-    let across: Components = {
-        let divisors = divisors(&squares, &t);
-        let mut divisors = divisors.into_iter();
-        place.each_ref().map(|y| quotient(y.clone(), divisors.next().unwrap_or_else(|| integer(1)), at))
-    };
+    let solution =
+        solved([start], STEPS_OF_SPHERE, newton, newton, "multiplier of the nearest place", shared);
+    let Solution { frozen: [frozen], exact: [t] } = solution;
+    // the sum is 1 at the solution
+    let divided = divisors(&squares, &frozen);
+    let terms: Components = std::array::from_fn(|i| quotient(stretched[i].clone(), divided[i].clone(), at));
+    let rest = less(inner(&terms, &terms), integer(1));
+    let found = shared.scalar(is_found(rest, integer(1)), "whether the nearest place is found");
+    let divided = divisors(&squares, &t);
+    let across: Components = std::array::from_fn(|i| quotient(place[i].clone(), divided[i].clone(), at));
     let across = keep(across, "normal, not of unit length,", shared);
-    let on_surface = all((0..3).map(|i| product([squares[i].clone(), square(across[i].clone())])));
-    let (is_found, what) =
-        (is_small(less(on_surface, integer(1)), integer(1)), "whether the nearest place is found");
-    let found = shared.scalar(is_found, what);
     let length = root(inner(&across, &across));
     let length = shared.scalar(quotient(length, found, at), "length of the normal");
     let normal = across.map(|part| quotient(part, length.clone(), at));
@@ -92,11 +89,13 @@ pub fn between([first, second]: [&Shape; 2], definitions: &mut Vec<Definition>, 
         let (_, next) = pair.newton(&share, shared);
         [next, low, high]
     };
-    let [share, ..] = solved([start, low, high], STEPS, within, newton, "share of the second", shared);
+    let solution = solved([start, low, high], STEPS, within, newton, "share of the second", shared);
+    let Solution { frozen: [frozen, ..], exact: [share, ..] } = solution;
+    let before = pair.at(&frozen, shared);
+    let found = is_found(before.rest(&frozen), all(before.reaches.iter().cloned()));
+    let found = shared.scalar(found, "whether the normal is found");
     let at_share = pair.at(&share, shared);
     let reach = all(at_share.reaches.iter().cloned());
-    let is_found = is_small(at_share.rest(&share), reach.clone());
-    let found = shared.scalar(is_found, "whether the normal is found");
     let length = root(inner(&at_share.along, &at_share.along));
     let length = shared.scalar(quotient(length, found, at), "length of the normal");
     let normal = at_share.along.each_ref().map(|part| quotient(part.clone(), length.clone(), at));
@@ -246,11 +245,6 @@ fn inverse(a: &[Components; 3], at: Span, shared: &mut Shared<'_>) -> [Component
 /// t + l^2
 fn divisors(squares: &Components, t: &Scalar) -> Components {
     squares.each_ref().map(|square| all([t.clone(), square.clone()]))
-}
-
-/// 1 where a number is small beside a scale, else 0.
-fn is_small(number: Scalar, scale: Scalar) -> Scalar {
-    step(less(product([ratio(FOUND.0, FOUND.1), scale]), size(number)))
 }
 
 fn sizes_of(ellipsoid: &Shape) -> Components {

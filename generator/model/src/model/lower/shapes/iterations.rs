@@ -1,7 +1,7 @@
 //! Equations that contacts solve by iteration: a bounded number of steps, written out (section 16.13 of docs/theory.md).
 //!
 //! What an iteration finds is frozen: derivatives take no notice of it. From it two of Newton's steps follow that are
-//! differentiated; they change nothing but rounding, and have the first three derivatives of the solution.
+//! differentiated; they double its digits twice, and have the first three derivatives of the solution.
 
 use super::algebra::*;
 use super::shared::Shared;
@@ -10,6 +10,18 @@ use crate::model::mechanism::Scalar;
 
 /// How many of Newton's steps are differentiated.
 const DIFFERENTIATED: usize = 2;
+
+/// What may be left of an equation after the iteration, relative to its terms: above the rounding of singles, and so little
+/// that nothing but rounding is left after two of Newton's steps.
+const FOUND: (i64, i64) = (1, 100_000);
+
+/// What an iteration found.
+pub struct Solution<const N: usize> {
+    /// what the iteration itself came to, of which derivatives take no notice
+    pub frozen: [Scalar; N],
+    /// this after Newton's steps
+    pub exact: [Scalar; N],
+}
 
 /// Steps from a start, of which derivatives take no notice, and then Newton's, of which they do. Numbers are given to
 /// all that use them.
@@ -20,19 +32,25 @@ pub fn solved<const N: usize>(
     mut newton: impl FnMut([Scalar; N], &mut Shared<'_>) -> [Scalar; N],
     what: &str,
     shared: &mut Shared<'_>,
-) -> [Scalar; N] {
-    let mut found = start.map(|start| shared.scalar(frozen(start), what));
+) -> Solution<N> {
+    let mut found = start.map(|start| shared.scalar(freeze(start), what));
     for _ in 0..steps {
-        found = step(found, shared).map(|next| shared.scalar(frozen(next), what));
+        found = step(found, shared).map(|next| shared.scalar(freeze(next), what));
     }
+    let frozen = found.clone();
     for _ in 0..DIFFERENTIATED {
         found = newton(found, shared).map(|next| shared.scalar(next, what));
     }
-    found
+    Solution { frozen, exact: found }
+}
+
+/// 1 where what is left of an equation is small enough beside its terms, else 0.
+pub fn is_found(rest: Scalar, terms: Scalar) -> Scalar {
+    step(less(product([ratio(FOUND.0, FOUND.1), terms]), size(rest)))
 }
 
 /// The value, of which derivatives take no notice.
-fn frozen(value: Scalar) -> Scalar {
+fn freeze(value: Scalar) -> Scalar {
     Scalar::Call(Function::Frozen, vec![value])
 }
 

@@ -6,16 +6,13 @@
 use super::algebra::*;
 use super::features::{Touch, axes_of};
 use super::heights::slope;
-use super::iterations::{either, solved};
+use super::iterations::{Solution, either, is_found, solved};
 use super::shared::Shared;
 use crate::model::mechanism::{Definition, Height, Kind, Scalar, Shape, Vector};
 use crate::span::Span;
 
 /// Steps of the iteration.
 const STEPS: usize = 8;
-/// What is left of an equation, relative to its terms, if its solution is found.
-const FOUND: (i64, i64) = (1, 1_000_000_000);
-
 /// The contact; none for a surface whose slopes have no slope.
 pub fn between([sphere, surface]: [&Shape; 2], definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
     let mut shared = Shared::pair([sphere, surface], definitions, at);
@@ -165,14 +162,16 @@ impl<'s, const N: usize> Ground<'s, N> {
             let step_of = self.newton(&foot, shared);
             by(&slopes, &step_of, (1, 1))
         };
-        let slopes = solved(start, STEPS, damped, newton, "slope at the place of contact", shared);
+        let solution = solved(start, STEPS, damped, newton, "slope at the place of contact", shared);
+        let Solution { frozen, exact: slopes } = solution;
+        let before = self.foot(&frozen, shared);
+        let found = is_found(root(squares(&before)), before.length.clone());
         let foot = self.foot(&slopes, shared);
         // the sphere fits into the ground's hollow if both eigenvalues of the matrix are positive
         let matrix = self.matrix(&foot, shared);
         let trace = all((0..N).map(|i| matrix[i][i].clone()));
         let fits = lesser(determinant(&matrix), trace);
-        let allowed = product([square(ratio(FOUND.0, FOUND.1)), foot.steep.clone()]);
-        let found = step(lesser(less(allowed, squares(&foot)), fits));
+        let found = product([found, step(fits)]);
         let found = shared.scalar(found, "whether the sphere touches at one place only");
         let length = shared.scalar(quotient(foot.length.clone(), found, self.at), "length of the normal");
         let terms = (0..N).map(|i| opposite(&scaled(slopes[i].clone(), &self.across[i])));
