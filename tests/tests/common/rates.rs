@@ -59,7 +59,7 @@ impl Arithmetic for Moving {
             Function::Cosh => x.cosh(),
             Function::Tanh => x.tanh(),
             Function::Abs => x * x.re.signum(),
-            Function::Sign => Dual64::from_re(call(function, x.re)),
+            Function::Sign | Function::Frozen => Dual64::from_re(call(function, x.re)),
             Function::Atan2 | Function::Min | Function::Max => panic!("{function:?} of one number"),
         })
     }
