@@ -61,7 +61,7 @@ impl Seen {
         let velocity = views.now.contact_velocity(contact).unwrap().map(|c| c.re);
         self.rate = self.rate.max((rate - dot3(velocity, one.normal)).abs() / size.max(norm3(velocity)));
         self.poses += 1;
-        if self.poses % 10 != 0 {
+        if !self.poses.is_multiple_of(10) {
             return;
         }
         // along one direction of all coordinates

@@ -96,6 +96,12 @@ pub fn between_bounds(a: Scalar, bound: &Scalar) -> Scalar {
     greater(below, Scalar::Neg(Box::new(bound.clone())))
 }
 
+/// A symmetric matrix from its entries on and above the diagonal, row by row.
+pub fn symmetric<T: Clone, const N: usize>(mut entry: impl FnMut(usize, usize) -> T) -> [[T; N]; N] {
+    let rows: Vec<Vec<T>> = (0..N).map(|i| (i..N).map(|j| entry(i, j)).collect()).collect();
+    std::array::from_fn(|i| std::array::from_fn(|j| rows[i.min(j)][i.max(j) - i.min(j)].clone()))
+}
+
 /// A dot product.
 pub fn dot(a: &Vector, b: &Vector) -> Scalar {
     Scalar::Dot(Box::new(a.clone()), Box::new(b.clone()))

@@ -146,15 +146,10 @@ impl Ellipsoids {
             let row = axes.each_ref().map(|e| product([sizes[k].clone(), dot(&own[k], e)]));
             keep(row, "semi-axis of the first", shared)
         });
-        let mut matrix: [Components; 3] = std::array::from_fn(|_| [0, 1, 2].map(integer));
-        for i in 0..3 {
-            for j in i..3 {
-                let entry = all(rows.iter().map(|row| product([row[i].clone(), row[j].clone()])));
-                let entry = shared.scalar(entry, "matrix of the first");
-                matrix[i][j] = entry.clone();
-                matrix[j][i] = entry;
-            }
-        }
+        let matrix = symmetric(|i, j| {
+            let entry = all(rows.iter().map(|row| product([row[i].clone(), row[j].clone()])));
+            shared.scalar(entry, "matrix of the first")
+        });
         let squares = sizes_of(second).map(square);
         let squares = keep(squares, "squared semi-axis of the second", shared);
         let d = first.at.from(&second.at);
@@ -220,26 +215,16 @@ impl Ellipsoids {
 
 /// The inverse of a symmetric matrix.
 fn inverse(a: &[Components; 3], at: Span, shared: &mut Shared<'_>) -> [Components; 3] {
-    let mut out: [Components; 3] = std::array::from_fn(|_| [0, 1, 2].map(integer));
     let cofactor = |i: usize, j: usize| {
         let ([k, l], [m, n]) = (others(i), others(j));
         less(product([a[k][m].clone(), a[l][n].clone()]), product([a[k][n].clone(), a[l][m].clone()]))
     };
-    for i in 0..3 {
-        for j in i..3 {
-            out[i][j] = shared.scalar(cofactor(i, j), "cofactor");
-        }
-    }
-    let determinant = shared.scalar(inner(&a[0], &out[0]), "determinant");
-    for i in 0..3 {
-        for j in i..3 {
-            let entry = quotient(out[i][j].clone(), determinant.clone(), at);
-            let entry = shared.scalar(entry, "inverse of the sum");
-            out[i][j] = entry.clone();
-            out[j][i] = entry;
-        }
-    }
-    out
+    let cofactors: [Components; 3] = symmetric(|i, j| shared.scalar(cofactor(i, j), "cofactor"));
+    let determinant = shared.scalar(inner(&a[0], &cofactors[0]), "determinant");
+    symmetric(|i, j| {
+        let entry = quotient(cofactors[i][j].clone(), determinant.clone(), at);
+        shared.scalar(entry, "inverse of the sum")
+    })
 }
 
 /// t + l^2

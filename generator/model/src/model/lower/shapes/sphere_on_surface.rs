@@ -56,14 +56,12 @@ struct Foot<const N: usize> {
 impl<'s, const N: usize> Ground<'s, N> {
     fn of(sphere: &Shape, surface: &'s Shape, at: Span, shared: &mut Shared<'_>) -> Option<Self> {
         let height = surface.height.as_ref()?;
-        let mut curvatures: [[Scalar; N]; N] = std::array::from_fn(|_| std::array::from_fn(|_| integer(0)));
-        for i in 0..N {
-            for j in i..N {
-                let value = slope(&height.slopes[i], Height::PLACES[j], surface.span)?;
-                curvatures[i][j] = value.clone();
-                curvatures[j][i] = value;
-            }
+        let curvatures: [[Option<Scalar>; N]; N] =
+            symmetric(|i, j| slope(&height.slopes[i], Height::PLACES[j], surface.span));
+        if curvatures.iter().flatten().any(Option::is_none) {
+            return None;
         }
+        let curvatures = curvatures.map(|row| row.map(|entry| entry.unwrap_or_else(|| integer(0))));
         let axes = axes_of(surface);
         let d = sphere.at.from(&surface.at);
         let across: [Vector; N] = std::array::from_fn(|i| axes[i].clone());
