@@ -1,25 +1,56 @@
 //! Contacts that a module reaches by number alone: the features of two boxes, and of a capsule and a box (docs/theory.md,
-//! 16.10 and 16.11).
+//! 16.10 and 16.11); and contacts whose routine solves an equation (16.13).
 
 use hodograph::{Contacts, Law, State};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_random::Random;
 
+hodograph::mechanism!("../models/shapes/ball_on_waves.mech");
 hodograph::mechanism!("../simulation/models/crate_on_table.mech");
+hodograph::mechanism!("../simulation/models/egg_on_egg.mech");
 hodograph::mechanism!("../simulation/models/log_on_table.mech");
 
+use ball_on_waves::BallOnWaves;
 use crate_on_table::CrateOnTable;
+use egg_on_egg::EggOnEgg;
 use log_on_table::LogOnTable;
 
 /// The routines of the module are those of the program.
 #[test]
 fn modules_compute_what_the_program_says() {
-    agree(&CrateOnTable::<f64>::default(), "crate_on_table", 52);
-    agree(&LogOnTable::<f64>::default(), "log_on_table", 22);
+    agree(&CrateOnTable::<f64>::default(), "simulation/models/crate_on_table", 52);
+    agree(&LogOnTable::<f64>::default(), "simulation/models/log_on_table", 22);
+    agree(&EggOnEgg::<f64>::default(), "simulation/models/egg_on_egg", 1);
+    agree(&BallOnWaves::<f64>::default(), "models/shapes/ball_on_waves", 1);
+}
+
+/// What a module says of an iteration in singles is what it says in doubles, to their rounding.
+#[test]
+fn equations_are_solved_in_singles_too() {
+    let doubles: [&dyn Contacts<f64>; 2] = [&EggOnEgg::<f64>::default(), &BallOnWaves::<f64>::default()];
+    let singles: [&dyn Contacts<f32>; 2] = [&EggOnEgg::<f32>::default(), &BallOnWaves::<f32>::default()];
+    let mut random = Random::new(0x51ab_0042_77de_0013);
+    for (exact, rough) in doubles.into_iter().zip(singles) {
+        for _ in 0..1000 {
+            let mut q = [0.0_f32; 7];
+            let turned = random.rotation();
+            (0..3).for_each(|i| q[i] = random.between(-0.5, 0.5) as f32);
+            q[2] += 0.5;
+            (0..4).for_each(|i| q[3 + i] = turned[i] as f32);
+            let (wide, still) = (q.map(f64::from), [0.0; 6]);
+            let state = State { time: 0.0, coordinates: &wide, speeds: &still, inputs: &[] };
+            let known = exact.contact_state(0, &state).unwrap();
+            let state = State { time: 0.0, coordinates: &q, speeds: &[0.0; 6], inputs: &[] };
+            let found = rough.contact_state(0, &state).unwrap();
+            let (gap, known_gap) = (f64::from(found.gap.unwrap()), known.gap.unwrap());
+            assert!((gap - known_gap).abs() < 1e-5, "{gap} {known_gap} at {q:?}");
+            assert!((found.normal.map(f64::from) - known.normal).norm() < 1e-4, "{q:?}");
+        }
+    }
 }
 
 fn agree(module: &dyn Contacts<f64>, name: &str, contacts: usize) {
-    let path = format!("{}/../simulation/models/{name}.mech", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../{name}.mech", env!("CARGO_MANIFEST_DIR"));
     let interpreted: InterpretedMechanism = InterpretedMechanism::read(path.as_ref()).unwrap();
     let mut random = Random::new(0x51ab_0042_77de_0001);
     for _ in 0..20 {
