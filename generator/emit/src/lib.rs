@@ -78,7 +78,7 @@ pub fn mistakes(mechanism: &Mechanism, program: &Program, requests: &Requests) -
 
 /// The module of a mechanism. The error says why the program does not fit the mechanism.
 pub fn module(mechanism: &Mechanism, program: &Program, options: &Options) -> Result<TokenStream, String> {
-    module_in_parts(mechanism, program, options, split::MAX_STATEMENTS)
+    module_in_parts(mechanism, program, options, split::longest(program))
 }
 
 /// The module of a mechanism, with at most about `longest` operations in a function.
@@ -218,7 +218,7 @@ impl<'a> Emitter<'a> {
             stages,
             uses_time,
             kinematic_inputs: false,
-            longest: split::MAX_STATEMENTS,
+            longest: split::longest(program),
             inlined: false,
         };
         emitter.unit_quaternions();

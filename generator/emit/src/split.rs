@@ -14,12 +14,23 @@ use super::Emitter;
 use super::groups::{Statement, grouped};
 use super::storage::{ArrayEntry, Storage};
 use super::values::{Place, local};
+use hodograph_model::arithmetic::Function;
+use hodograph_program::program::Program;
 use hodograph_program::program::operation::{Operation, Stage, Value};
 
 /// The approximate largest number of statements in a function of an emitted module. Values that pass from one
-/// function to the next are stored and loaded. Each `let` is a scope within that of the one before, and a compiler that
-/// writes line tables descends into them: at 4400 it ran out of its stack.
-pub const MAX_STATEMENTS: usize = 3600;
+/// function to the next are stored and loaded.
+const MAX_STATEMENTS: usize = 4400;
+/// The same in modules whose contacts solve equations. Each `let` is a scope within that of the one before, and calls are
+/// inlined into it: where line tables are written, the compiler descends into all of them, and ran out of its stack in
+/// functions that are mostly such calls.
+const MAX_STATEMENTS_OF_ITERATIONS: usize = 1500;
+
+/// The approximate largest number of statements in a function of the module of a program.
+pub fn longest(program: &Program) -> usize {
+    let iterates = |operation: &Operation| matches!(operation, Operation::Call(Function::Frozen, _));
+    if program.operations.iter().any(iterates) { MAX_STATEMENTS_OF_ITERATIONS } else { MAX_STATEMENTS }
+}
 
 /// The places of the values of earlier parts.
 #[derive(Default)]
