@@ -4,6 +4,7 @@
 //! runs those of `tests/language.rs`.
 
 mod cascades;
+mod clearances;
 mod diagnostics;
 mod errors_page;
 mod expansion;

@@ -1,7 +1,7 @@
 //! Masses, mass centres and inertias that follow from shapes, against integrals over their slices.
 
 use hodograph_generator::check::check;
-use hodograph_generator::model::mechanism::Scalar;
+use hodograph_generator::model::mechanism::{Mechanism, Scalar};
 use hodograph_generator::numeric::{Level, State};
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
@@ -34,6 +34,26 @@ fn of_slices(from: f64, to: f64, slice: impl Fn(f64) -> [f64; 3]) -> [f64; 4] {
     let along = rho * integral(from, to, |z| slice(z)[1]);
     let across = rho * integral(from, to, |z| slice(z)[2] + (z - centre).powi(2) * slice(z)[0]);
     [mass, centre, along, across]
+}
+
+/// A body that moves freely, of one shape.
+fn of_one(shape: &str) -> Mechanism {
+    let text = format!(
+        "mechanism One;
+parameters {{ k: m = 0.1, rho: kg/m^3 = 700 }}
+coordinates {{ q1: m, q2: m, q3: m, q4: rad, q5: rad, q6: rad }}
+speeds {{ u1: m/s, u2: m/s, u3: m/s, u4: rad/s, u5: rad/s, u6: rad/s }}
+frames {{ E = N.euler(xyz, q4, q5, q6); }}
+points {{ P = O + q1*N.x + q2*N.y + q3*N.z; }}
+bodies {{ A {{ frame: E, shape: S }} }}
+shapes {{ {shape} }}
+"
+    );
+    let source = Source::file("one.mech", text);
+    let checked = check(&source);
+    let said = render(&checked.diagnostics, &source);
+    assert!(said.is_empty(), "{said}");
+    checked.mechanism.expect("a model without errors")
 }
 
 /// Mass properties of shapes against integrals over their slices.
@@ -82,22 +102,7 @@ fn masses_are_integrals_over_slices() {
         ),
     ];
     for (shape, [mass, centre, along, across]) in cases {
-        let text = format!(
-            "mechanism One;
-parameters {{ k: m = 0.1, rho: kg/m^3 = 700 }}
-coordinates {{ q1: m, q2: m, q3: m, q4: rad, q5: rad, q6: rad }}
-speeds {{ u1: m/s, u2: m/s, u3: m/s, u4: rad/s, u5: rad/s, u6: rad/s }}
-frames {{ E = N.euler(xyz, q4, q5, q6); }}
-points {{ P = O + q1*N.x + q2*N.y + q3*N.z; }}
-bodies {{ A {{ frame: E, shape: S }} }}
-shapes {{ S {{ of: A, at: P, {shape}, density: rho }} }}
-"
-        );
-        let source = Source::file("one.mech", text);
-        let checked = check(&source);
-        let said = render(&checked.diagnostics, &source);
-        let m = checked.mechanism.unwrap_or_else(|| panic!("{said}"));
-        assert!(said.is_empty(), "{said}");
+        let m = of_one(&format!("S {{ of: A, at: P, {shape}, density: rho }}"));
         let state = State::of(&m);
         let values = evaluator(&m, &state, still(&state));
         let number = |scalar: &Scalar| values.scalar(scalar, Level::Motion).unwrap().re;
@@ -119,23 +124,8 @@ shapes {{ S {{ of: A, at: P, {shape}, density: rho }} }}
 fn of_polytope(vertices: &[[f64; 3]]) -> [f64; 10] {
     let list: Vec<String> =
         vertices.iter().map(|v| format!("P + 10*k*E.vec({}, {}, {})", v[0], v[1], v[2])).collect();
-    let text = format!(
-        "mechanism One;
-parameters {{ k: m = 0.1, rho: kg/m^3 = 700 }}
-coordinates {{ q1: m, q2: m, q3: m, q4: rad, q5: rad, q6: rad }}
-speeds {{ u1: m/s, u2: m/s, u3: m/s, u4: rad/s, u5: rad/s, u6: rad/s }}
-frames {{ E = N.euler(xyz, q4, q5, q6); }}
-points {{ P = O + q1*N.x + q2*N.y + q3*N.z; }}
-bodies {{ A {{ frame: E, shape: S }} }}
-shapes {{ S {{ of: A, at: P + 2*k*E.x, polytope: [{}], density: rho }} }}
-",
-        list.join(", ")
-    );
-    let source = Source::file("one.mech", text);
-    let checked = check(&source);
-    let said = render(&checked.diagnostics, &source);
-    let m = checked.mechanism.unwrap_or_else(|| panic!("{said}"));
-    assert!(said.is_empty(), "{said}");
+    let list = list.join(", ");
+    let m = of_one(&format!("S {{ of: A, at: P + 2*k*E.x, polytope: [{list}], density: rho }}"));
     let state = State::of(&m);
     let values = evaluator(&m, &state, still(&state));
     let number = |scalar: &Scalar| values.scalar(scalar, Level::Motion).unwrap().re;

@@ -5,12 +5,7 @@ use hodograph_generator::numeric::views::{cross3, dot3, norm3, sub3};
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
-use hodograph_generator::numeric::{Level, Views};
-use hodograph_random::Random;
-
-use crate::shapes::{
-    V, along, back, compare, model, nearest_valid, of_segments, plus, pose, random_state, said, scaled,
-};
+use crate::shapes::{V, along, back, compare, compare_capsules, model, of_segments, plus, scaled};
 
 /// The vertices of a polytope on B, and the corners of its faces counterclockwise as seen from outside.
 const PYRAMID: ([V; 5], [&[usize]; 5]) = (
@@ -115,60 +110,14 @@ fn of_segment_and_pyramid([c, a]: [V; 2], h: f64) -> Option<(V, V, f64)> {
     pairs.into_iter().min_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
-/// Of all contacts of a capsule with a polytope the nearest tells the distance; each that is valid has a gap whose rate is
-/// the normal velocity.
+/// The contacts of a capsule on a pyramid: two ends, eight edges, five vertices.
 #[test]
 fn capsules_on_polytopes() {
     let vertices = PYRAMID.0.map(|v| format!("H + 10*k*F.vec({}, {}, {})", v[0], v[1], v[2]));
     let capsule = "S { of: A, capsule: [k, 10*k], axis: E.x }";
     let m = model(&format!("{capsule}, T {{ of: B, polytope: [{}] }}", vertices.join(", ")), "S on T");
-    // two ends, eight edges, five vertices
     assert_eq!(m.contacts.len(), 15);
-    let mut random = Random::named("capsule on polytope");
-    let (mut worst, mut worst_rate, mut through) = (0.0_f64, 0.0_f64, 0);
-    let mut seen = [0; 3];
-    while seen.iter().sum::<usize>() < 10_000 {
-        let state = random_state(&mut random, &m);
-        let pose = pose(&m, &state);
-        let segment =
-            [along(sub3(pose.at[0], pose.at[1]), &pose.axes[1]), along(pose.axes[0][0], &pose.axes[1])];
-        let Some((p, q, apart)) = of_segment_and_pyramid(segment, 0.5) else {
-            through += 1;
-            assert!(said(&m, &state).is_none_or(|found| found.iter().any(|one| one.gap < 0.0)), "{state:?}");
-            continue;
-        };
-        let distance = norm3(sub3(p, q));
-        let found = said(&m, &state).unwrap();
-        assert_eq!(distance > 0.1, found.iter().all(|one| one.gap > 0.0), "{distance} {state:?}");
-        if distance < 0.1 {
-            continue;
-        }
-        let nearest = nearest_valid(&m, &state, &found);
-        seen[usize::from(nearest >= 2) + usize::from(nearest >= 10)] += 1;
-        worst = worst.max((found[nearest].gap - (distance - 0.1)).abs());
-        let n = back(scaled(sub3(p, q), 1.0 / distance), &pose.axes[1]);
-        let on = plus(plus(pose.at[1], back(p, &pose.axes[1]), 1.0), n, -0.1);
-        let known = distance * apart.min(1.0);
-        worst = worst.max(norm3(sub3(found[nearest].normal, n)) * known);
-        worst = worst.max(norm3(sub3(found[nearest].point, on)) * known);
-        let views = Views::at(&m, &state).unwrap();
-        let scale = 1.0 + state.speeds.iter().fold(0.0_f64, |s, u| s.max(u.abs()));
-        for (contact, one) in m.contacts.iter().zip(&found) {
-            let scalar =
-                |of: &Option<_>| of.as_ref().map(|of| views.now.scalar(of, Level::Geometry).unwrap());
-            if scalar(&contact.validity).is_some_and(|validity| validity.re < 1e-9) {
-                continue;
-            }
-            assert!(one.gap >= distance - 0.1 - 1e-12, "{state:?}");
-            let rate = scalar(&contact.gap).unwrap().e1;
-            let velocity = views.now.contact_velocity(contact).unwrap().map(|c| c.re);
-            let off = (rate - dot3(velocity, one.normal)).abs() / scale;
-            worst_rate = worst_rate.max(off * known.min(1.0));
-        }
-    }
-    println!("{seen:?}, {through} through: {worst:.1e} beside nearest points, {worst_rate:.1e} of rates");
-    assert!(worst < 1e-12 && worst_rate < 1e-12, "{worst:e} {worst_rate:e}");
-    assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
+    compare_capsules("capsule on polytope", &m, 8, |segment| of_segment_and_pyramid(segment, 0.5));
 }
 
 /// Polytopes that are none, and pairs with too many contacts, are named.

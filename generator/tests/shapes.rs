@@ -517,46 +517,46 @@ pub fn nearest_valid(m: &Mechanism, state: &State, found: &[Said]) -> usize {
     valid.min_by(|a, b| found[*a].gap.total_cmp(&found[*b].gap)).unwrap()
 }
 
-/// Of all contacts of a capsule with a box the nearest tells the distance; each that is valid has a gap whose rate is the
-/// normal velocity.
-#[test]
-fn capsules_on_boxes() {
-    let shapes = "S { of: A, capsule: [k, 10*k], axis: E.x }, T { of: B, box: [4*k, 6*k, 8*k] }";
-    let m = model(shapes, "S on T");
-    assert_eq!(m.contacts.len(), 22);
-    let half = [0.2, 0.3, 0.4];
-    let mut random = Random::named("capsule on box");
-    let (mut worst, mut worst_rate) = (0.0_f64, 0.0_f64);
+/// Of all contacts of a capsule (radius 0.1, half length 0.5) with a body of so many edges the nearest tells the distance;
+/// each that is valid has a gap whose rate is the normal velocity. The nearest points of a segment, given in the body's
+/// frame, and the body are found by `nearest`; `None` where the segment passes through.
+pub fn compare_capsules(
+    name: &str,
+    m: &Mechanism,
+    edges: usize,
+    nearest: impl Fn([V; 2]) -> Option<(V, V, f64)>,
+) {
+    let mut random = Random::named(name);
+    let (mut worst, mut worst_rate, mut through) = (0.0_f64, 0.0_f64, 0);
     // poses in which the nearest contact is of an end, an edge and a vertex
     let mut seen = [0; 3];
     while seen.iter().sum::<usize>() < POSES {
-        let state = random_state(&mut random, &m);
-        let pose = pose(&m, &state);
+        let state = random_state(&mut random, m);
+        let pose = pose(m, &state);
         let segment =
             [along(sub3(pose.at[0], pose.at[1]), &pose.axes[1]), along(pose.axes[0][0], &pose.axes[1])];
-        if pierces(segment, 0.5, half) {
-            // an end within the box has no direction, which is an error
-            assert!(said(&m, &state).is_none_or(|found| found.iter().any(|one| one.gap < 0.0)), "{state:?}");
+        let Some((p, q, apart)) = nearest(segment) else {
+            // an end within the body has no direction, which is an error
+            through += 1;
+            assert!(said(m, &state).is_none_or(|found| found.iter().any(|one| one.gap < 0.0)), "{state:?}");
             continue;
-        }
-        let (p, q, apart) = of_segment_and_box(segment, 0.5, half);
+        };
         let distance = norm3(sub3(p, q));
-        let found = said(&m, &state).unwrap();
+        let found = said(m, &state).unwrap();
         // bodies that overlap are refused, and are known by a contact that is
-        assert_eq!(distance > 0.1, found.iter().all(|one| one.gap > 0.0), "{state:?}");
+        assert_eq!(distance > 0.1, found.iter().all(|one| one.gap > 0.0), "{distance} {state:?}");
         if distance < 0.1 {
             continue;
         }
-        let nearest = nearest_valid(&m, &state, &found);
-        let kind = usize::from(nearest >= 2) + usize::from(nearest >= 14);
-        seen[kind] += 1;
+        let nearest = nearest_valid(m, &state, &found);
+        seen[usize::from(nearest >= 2) + usize::from(nearest >= 2 + edges)] += 1;
         worst = worst.max((found[nearest].gap - (distance - 0.1)).abs());
         let n = back(scaled(sub3(p, q), 1.0 / distance), &pose.axes[1]);
         let on = plus(plus(pose.at[1], back(p, &pose.axes[1]), 1.0), n, -0.1);
         let known = distance * apart.min(1.0);
         worst = worst.max(norm3(sub3(found[nearest].normal, n)) * known);
         worst = worst.max(norm3(sub3(found[nearest].point, on)) * known);
-        let views = Views::at(&m, &state).unwrap();
+        let views = Views::at(m, &state).unwrap();
         let scale = 1.0 + state.speeds.iter().fold(0.0_f64, |s, u| s.max(u.abs()));
         for (contact, one) in m.contacts.iter().zip(&found) {
             let scalar =
@@ -572,9 +572,23 @@ fn capsules_on_boxes() {
             worst_rate = worst_rate.max(off * known.min(1.0));
         }
     }
-    println!("{seen:?}: {worst:.1e} beside nearest points, {worst_rate:.1e} of rates");
-    assert!(worst < 1e-12 && worst_rate < 1e-12, "{worst:e} {worst_rate:e}");
-    assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
+    println!(
+        "{name}: {seen:?}, {through} through: {worst:.1e} beside nearest points, {worst_rate:.1e} of rates"
+    );
+    assert!(worst < 1e-12 && worst_rate < 1e-12, "{name}: {worst:e} {worst_rate:e}");
+    assert!(seen.iter().all(|&count| count > 500), "{name}: {seen:?}");
+}
+
+/// The contacts of a capsule on a box: two ends, twelve edges, eight vertices.
+#[test]
+fn capsules_on_boxes() {
+    let shapes = "S { of: A, capsule: [k, 10*k], axis: E.x }, T { of: B, box: [4*k, 6*k, 8*k] }";
+    let m = model(shapes, "S on T");
+    assert_eq!(m.contacts.len(), 22);
+    let half = [0.2, 0.3, 0.4];
+    compare_capsules("capsule on box", &m, 12, |segment| {
+        (!pierces(segment, 0.5, half)).then(|| of_segment_and_box(segment, 0.5, half))
+    });
 }
 
 /// A capsule that lies flat on a face and beyond both of its edges has a contact at each, also where it is tilted by

@@ -106,7 +106,7 @@ pub(crate) fn check(
                 .map_err(|message| error(Some(contact), ErrorKind::BadOption(message)))?,
         };
         let ends = mechanism.validity(contact, state).map_err(fault)?.is_some();
-        let pair = Pair { surface, law, ends };
+        let pair = Pair { surface, law, ends, first: mechanism.pair(contact) };
         pair.check().map_err(|message| error(Some(contact), ErrorKind::BadOption(message)))?;
         *slot = Some(pair);
     }

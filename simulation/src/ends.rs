@@ -9,7 +9,7 @@
 //! Where a contact hands over to its neighbour both may be the same: one place and one normal. Only one of them is closed
 //! then, which goes on to its own end.
 
-use hodograph::{State, StateError};
+use hodograph::{Distance, State, StateError};
 use nalgebra::Vector3;
 
 use crate::closed_contacts::ClosedContacts;
@@ -58,10 +58,16 @@ impl Transition<'_> {
         }
     }
 
-    /// Whether a contact that is near its face lies beside it, so that it may come from the side.
-    pub(crate) fn is_beside(&self, contact: usize) -> bool {
-        self.front.phases[contact] == Phase::Open(Leaving::Near)
-            && self.validity(contact, &self.here()).is_ok_and(|validity| validity < 0.5 * self.low())
+    /// Those of these contacts that are near their faces and lie beside them, so that they may come from the side.
+    pub(crate) fn beside(&self, near: &[usize]) -> Vec<usize> {
+        let near: Vec<usize> = near.iter().copied().filter(|&contact| self.ends(contact)).collect();
+        let mut distances = vec![Distance::default(); near.len()];
+        if near.is_empty() || self.mechanism.gaps(&near, &self.here(), &mut distances).is_err() {
+            return Vec::new();
+        }
+        let low = 0.5 * self.low();
+        let lies_beside = |distance: &Distance| distance.validity.is_some_and(|validity| validity < low);
+        near.into_iter().zip(&distances).filter(|(_, found)| lies_beside(found)).map(|(one, _)| one).collect()
     }
 
     /// Handles a contact that has come to its face from the side: it begins if its normal velocity is zero.
@@ -87,21 +93,21 @@ impl Transition<'_> {
     fn arrived(&self, but: usize) -> Result<Vec<usize>, SimulationError> {
         let here = self.here();
         let mut arrived = Vec::new();
-        for contact in (0..self.front.phases.len()).filter(|&contact| contact != but) {
-            let open = matches!(self.front.phases[contact], Phase::Open(Leaving::Near | Leaving::Apart));
-            if !open || !self.ends(contact) || self.surfaces[contact].is_none() {
-                continue;
-            }
-            let failed = |error| self.failure(Failure::State(error));
-            let validity = self.validity(contact, &here).map_err(failed)?;
-            if validity < 0.5 * self.low() {
-                continue;
-            }
-            let gap = self.mechanism.gap(contact, &here).map_err(failed)?;
-            if gap.is_some_and(|gap| gap <= self.low())
+        let may_arrive = |&contact: &usize| {
+            let phase = &self.front.phases[contact];
+            contact != but
+                && matches!(phase, Phase::Open(Leaving::Near | Leaving::Apart))
+                && self.ends(contact)
+                && self.surfaces[contact].is_some()
+        };
+        let open = (0..self.front.phases.len()).filter(may_arrive);
+        let failed = |error| self.failure(Failure::State(error));
+        for (contact, distance) in self.distances_nearby(open, &here).map_err(failed)? {
+            if distance.validity.is_some_and(|validity| validity >= 0.5 * self.low())
+                && distance.gap.is_some_and(|gap| gap <= self.low())
                 && self.keeps_height(contact)?
                 && !self.is_held(contact)?
-                && !self.coincides(contact, &arrived)?
+                && self.coinciding(&[contact], &arrived)?.is_empty()
             {
                 arrived.push(contact);
             }
@@ -111,24 +117,38 @@ impl Transition<'_> {
 
     /// Whether a closed contact holds the place of this one, with the same normal.
     pub(crate) fn is_held(&self, contact: usize) -> Result<bool, SimulationError> {
-        let closed: Vec<usize> =
-            (0..self.front.phases.len()).filter(|&other| self.front.phases[other].is_closed()).collect();
-        self.coincides(contact, &closed)
+        Ok(!self.held(&[contact])?.is_empty())
     }
 
-    /// Whether a contact whose faces or edges are bounded has place and normal of another such contact: its normal partial
-    /// velocities.
-    fn coincides(&self, contact: usize, others: &[usize]) -> Result<bool, SimulationError> {
-        let mut all = vec![contact];
-        all.extend(others.iter().copied().filter(|&other| other != contact && self.ends(other)));
-        if all.len() == 1 || !self.ends(contact) {
-            return Ok(false);
+    /// Those of these contacts whose place a closed contact holds, with the same normal.
+    pub(crate) fn held(&self, contacts: &[usize]) -> Result<Vec<usize>, SimulationError> {
+        let closed: Vec<usize> =
+            (0..self.front.phases.len()).filter(|&other| self.front.phases[other].is_closed()).collect();
+        self.coinciding(contacts, &closed)
+    }
+
+    /// Those of these contacts whose faces or edges are bounded and that have place and normal of another such contact
+    /// among `others`: its normal partial velocities.
+    fn coinciding(&self, contacts: &[usize], others: &[usize]) -> Result<Vec<usize>, SimulationError> {
+        let bounded = |of: &[usize]| -> Vec<usize> {
+            of.iter().copied().filter(|&contact| self.ends(contact)).collect()
+        };
+        let (contacts, others) = (bounded(contacts), bounded(others));
+        if contacts.is_empty() || others.is_empty() {
+            return Ok(Vec::new());
         }
+        let mut all = [&contacts[..], &others].concat();
+        all.sort_unstable();
+        all.dedup();
         let support = ClosedContacts::new(self.mechanism, &self.here(), &all, false)
             .map_err(|error| self.failure(Failure::State(error)))?;
-        let normal = |place: usize| support.partials.column(3 * place);
-        let size = normal(0).amax();
-        Ok((1..all.len()).any(|place| (normal(place) - normal(0)).amax() <= SAME * size))
+        let normal = |contact: usize| support.partials.column(3 * all.binary_search(&contact).unwrap_or(0));
+        let is_at = |contact: usize, other: usize| {
+            let own = normal(contact);
+            other != contact && (normal(other) - own).amax() <= SAME * own.amax()
+        };
+        let coincides = |&contact: &usize| others.iter().any(|&other| is_at(contact, other));
+        Ok(contacts.into_iter().filter(coincides).collect())
     }
 
     /// Whether the normal velocity of a contact is zero up to rounding.

@@ -67,14 +67,22 @@ const OTHER: f64 = 1e-3;
 const MANY: f64 = 100.0;
 
 impl Transition<'_> {
-    /// The functions to be monitored over the next time `h`, and bounds of their rounding errors.
-    pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
+    /// The functions to be monitored over the next time `h`, and bounds of their rounding errors. Pairs of shapes that
+    /// stay `apart`, by their first contacts, need none.
+    pub(crate) fn watched(&self, closed: &[Closed], h: f64, apart: &[usize]) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(ComponentKind::Coordinate);
+        let phases = self.front.phases.iter().enumerate();
+        let near: Vec<usize> =
+            phases.filter(|(_, phase)| **phase == Phase::Open(Leaving::Near)).map(|(near, _)| near).collect();
+        let (held, beside) = (self.held(&near).unwrap_or_default(), self.beside(&near));
         for (contact, phase) in self.front.phases.iter().enumerate() {
+            if self.first_of_pair(contact).is_some_and(|first| apart.contains(&first)) {
+                continue;
+            }
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
-                && !(*leaving == Leaving::Near && self.is_held(contact).unwrap_or(false))
+                && !held.contains(&contact)
             {
                 watched.push(Watched::Gap(contact));
                 let rate = || self.rounding_of_rate(contact);
@@ -85,7 +93,7 @@ impl Transition<'_> {
                     Leaving::Apart | Leaving::Near => self.rounding_of_gap(contact),
                 });
             }
-            if self.ends(contact) && self.is_beside(contact) {
+            if beside.contains(&contact) {
                 watched.push(Watched::Entry(contact));
                 noise.push(self.rounding_of_gap(contact));
             }

@@ -184,17 +184,12 @@ impl Transition<'_> {
         let fault = |error| self.failure(Failure::State(error));
         let size =
             self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
-        let mut touching = Vec::new();
-        for contact in 0..self.front.phases.len() {
-            if self.surfaces[contact].is_none() {
-                continue;
-            }
-            if self.front.phases[contact].is_closed() || first == Some(contact) {
-                touching.push(contact);
-                continue;
-            }
-            let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
-            if self.ends(contact) && !self.is_valid(contact, &state)? {
+        let (mut touching, open): (Vec<usize>, Vec<usize>) = (0..self.front.phases.len())
+            .filter(|&contact| self.surfaces[contact].is_some())
+            .partition(|&contact| self.front.phases[contact].is_closed() || first == Some(contact));
+        for (contact, distance) in self.distances_nearby(open.into_iter(), &state).map_err(fault)? {
+            let Some(gap) = distance.gap else { continue };
+            if distance.validity.is_some_and(|validity| validity < 0.0) {
                 continue;
             }
             let rate = self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x;
@@ -202,6 +197,7 @@ impl Transition<'_> {
                 touching.push(contact);
             }
         }
+        touching.sort_unstable();
         Ok(touching)
     }
 

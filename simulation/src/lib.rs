@@ -30,6 +30,7 @@
 //! ```
 
 mod angles;
+mod broad_phase;
 mod check;
 mod closed_contacts;
 mod commit;

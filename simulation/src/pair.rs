@@ -12,6 +12,8 @@ pub(crate) struct Pair {
     pub law: ContactLaw,
     /// whether the faces or edges are bounded
     pub ends: bool,
+    /// the first contact of the same two shapes, where these have many contacts and a clearance
+    pub first: Option<usize>,
 }
 
 /// The coefficients of friction of a contact in a state: the static and the sliding one.
@@ -203,9 +205,14 @@ mod tests {
     #[test]
     fn ladders_have_the_sum_of_their_series() {
         let surface = Surface { mu: 0.0, e: 0.7, law: hodograph::Law::Newton };
-        let constant = Pair { surface, law: ContactLaw::default(), ends: false };
+        let constant = Pair { surface, law: ContactLaw::default(), ends: false, first: None };
         let restitution = Restitution::Table(vec![[0.0, 0.7]]);
-        let table = Pair { surface, law: ContactLaw { restitution, ..ContactLaw::default() }, ends: false };
+        let table = Pair {
+            surface,
+            law: ContactLaw { restitution, ..ContactLaw::default() },
+            ends: false,
+            first: None,
+        };
         let (one, other) = (constant.bounces_for(2.0, 1.4, 9.81), table.bounces_for(2.0, 1.4, 9.81));
         assert!((one.unwrap() / other.unwrap() - 1.0).abs() < 1e-8);
     }

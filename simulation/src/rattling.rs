@@ -49,20 +49,17 @@ impl Transition<'_> {
     fn near(&self, first: usize) -> Result<Vec<usize>, SimulationError> {
         let state = self.here();
         let reach = NEAR * self.options.absolute_tolerance;
-        let mut near = Vec::new();
-        for contact in 0..self.front.phases.len() {
-            if self.surfaces[contact].is_none() {
-                continue;
-            }
-            let gap =
-                || self.mechanism.gap(contact, &state).map_err(|error| self.failure(Failure::State(error)));
-            if contact == first
-                || self.front.phases[contact].is_closed()
-                || gap()?.is_some_and(|gap| gap <= reach) && self.is_valid(contact, &state)?
-            {
+        let (mut near, open): (Vec<usize>, Vec<usize>) = (0..self.front.phases.len())
+            .filter(|&contact| self.surfaces[contact].is_some())
+            .partition(|&contact| contact == first || self.front.phases[contact].is_closed());
+        let fault = |error| self.failure(Failure::State(error));
+        for (contact, distance) in self.distances_nearby(open.into_iter(), &state).map_err(fault)? {
+            let is_low = distance.gap.is_some_and(|gap| gap <= reach);
+            if is_low && distance.validity.is_none_or(|validity| validity >= 0.0) {
                 near.push(contact);
             }
         }
+        near.sort_unstable();
         Ok(near)
     }
 

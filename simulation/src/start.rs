@@ -21,20 +21,18 @@ impl Transition<'_> {
         let mut strikes = None;
         let mut stay = Vec::new();
         let was = self.front.phases.clone();
-        for contact in 0..self.front.phases.len() {
-            if self.surfaces[contact].is_none() {
-                continue;
-            }
+        let known = (0..self.front.phases.len()).filter(|&contact| self.surfaces[contact].is_some());
+        let fault = |error| self.failure(Failure::State(error));
+        for (contact, distance) in self.distances_nearby(known, &state).map_err(fault)? {
             let (low, ends) = (self.low(), self.ends(contact));
-            let fault = |error| self.failure(Failure::State(error));
-            let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
+            let Some(gap) = distance.gap else { continue };
             if gap < -overlap {
                 return Err(self.error(Some(contact), ErrorKind::Overlap(gap)));
             }
             if gap > overlap {
                 continue;
             }
-            let valid = self.is_valid(contact, &state)?;
+            let valid = distance.validity.is_none_or(|validity| validity >= 0.0);
             if ends && gap <= low {
                 self.front.phases[contact] = Phase::Open(Leaving::Near);
             }

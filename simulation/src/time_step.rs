@@ -352,11 +352,11 @@ impl Transition<'_> {
                 most = 0.5 * step.h;
                 continue;
             }
-            let (watched, noise) = self.watched(closed, step.h);
             let Some(turns) = self.turns(closed, &step) else {
                 most = 0.5 * step.h;
                 continue;
             };
+            let (watched, noise) = self.watched(closed, step.h, &self.stay_apart(&step, turns));
             let h = step.h;
             let found = first_crossing(
                 &mut Functions {

@@ -5,6 +5,7 @@
 
 mod bipeds;
 mod bodies;
+mod broad_phase;
 mod campaigns;
 mod common;
 mod contact_families;

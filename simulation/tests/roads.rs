@@ -5,7 +5,7 @@ use crate::common::{run, start, surface};
 use crate::many::{model, with_parameters};
 use hodograph::Law;
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::{EventKind, Simulation};
+use hodograph_simulation::{EventKind, Progress, Simulation};
 
 const G: f64 = 9.81;
 
@@ -86,6 +86,34 @@ fn a_wheel_on_a_road_keeps_to_its_path() {
         let mut simulation = start(&machine, &[x, y, 0.0], &[0.0; 3], surface(mu, 0.0, Law::Newton));
         compare(&mut simulation, &wheel, [0.1, 0.0], [0, 1], 1e-9);
         assert!(simulation.phase(0).is_some());
+    }
+}
+
+/// A wheel that rolls into a hollow narrower than itself comes to its other side: that is an error, and it is not in the
+/// ground there.
+#[test]
+fn a_wheel_that_does_not_fit_into_a_hollow_is_refused() {
+    let (radius, height, number) = (0.6, 0.1, 6.0);
+    let machine = with_parameters(&model("ball_on_road"), &[("r", radius), ("h", height), ("k", number)]);
+    let wheel = Wheel { radius, height, number, heavy: 1.0 };
+    for mu in [0.0, 0.9] {
+        // just beyond a crest: the hollow is to the right of it
+        let [x, y] = wheel.middle(std::f64::consts::FRAC_PI_2 / number + 0.03);
+        let mut simulation = start(&machine, &[x, y, 0.0], &[0.2, 0.0, 0.0], surface(mu, 0.0, Law::Newton));
+        let error = loop {
+            match simulation.advance(5.0) {
+                Ok(Progress::Event(_)) => {}
+                Ok(Progress::Reached) => panic!("it rolls on: {:?}", simulation.coordinates()),
+                Err(error) => break error.to_string(),
+            }
+        };
+        let [x, y] = [0, 1].map(|i| simulation.coordinates()[i]);
+        let highest = (-1000..=1000)
+            .map(|i| 1e-3 * radius * f64::from(i))
+            .map(|a| road(height, number, x + a)[0] + (radius * radius - a * a).sqrt())
+            .fold(f64::NEG_INFINITY, f64::max);
+        println!("{error}, at {x} {y}, {:.1e} of the radius in the ground", (highest - y) / radius);
+        assert!((highest - y) / radius < 5e-3, "{highest} {y}");
     }
 }
 

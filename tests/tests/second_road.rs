@@ -178,6 +178,8 @@ fn contacts() {
             close(&format!("{name} gap"), &get(C::Gap).values, &gap, 1e-12)?;
             let validity: Vec<f64> = theirs.validity.into_iter().collect();
             close(&format!("{name} validity"), &get(C::Validity).values, &validity, 1e-12)?;
+            let clearance: Vec<f64> = theirs.clearance.into_iter().collect();
+            close(&format!("{name} clearance"), &get(C::Clearance).values, &clearance, 1e-12)?;
         }
         Ok(())
     });

@@ -17,7 +17,7 @@ pub fn shape(mechanism: &dyn Contacts<f64>, quantity: Q) -> Option<Vec<usize>> {
         Q::Point(..) => vec![3],
         Q::Contact(_, C::Normal | C::First | C::Second | C::Velocity | C::FreeAcceleration) => vec![3],
         Q::Contact(_, C::Reduced) => vec![6],
-        Q::Contact(_, C::Gap | C::Validity) => vec![],
+        Q::Contact(_, C::Gap | C::Validity | C::Clearance) => vec![],
         Q::Contact(_, C::PartialVelocities) => vec![3, p],
         Q::Contact(_, C::Response) => vec![p, 3],
         _ => return None,
@@ -68,6 +68,7 @@ pub fn evaluate(
                     let validity = mechanism.validity(contact, state)?;
                     return fill(numbers, &[one(validity, "validity of this contact")?]);
                 }
+                C::Clearance => return mechanism.clearances(&[contact], state, numbers),
                 C::Velocity => mechanism.contact_velocity(contact, state)?.into(),
                 C::FreeAcceleration => mechanism.free_acceleration(contact, state)?.into(),
                 C::Normal => mechanism.contact_state(contact, state)?.normal.into(),

@@ -7,6 +7,7 @@ mod description;
 mod features;
 mod geometry;
 mod in_one_pass;
+mod parts;
 mod quantities;
 
 use proc_macro2::{Ident, Literal, TokenStream};

@@ -96,6 +96,8 @@ fn mechanism() -> Mechanism {
             without_gap: false,
             validity: None,
             tangent: None,
+            clearance: None,
+            first_of_pair: None,
             gap_span: span,
             surface: None,
             law: ContactLaw::default(),

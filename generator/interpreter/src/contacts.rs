@@ -16,7 +16,7 @@ use hodograph_program::program::operation::Operation;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
 use crate::InterpretedMechanism;
-use crate::routines::{CLOSED, COLLISION, NEAR, OF_EACH, OfContact, OfSeveral, Request};
+use crate::routines::{CLOSED, COLLISION, OF_EACH, OfContact, OfSeveral, Request};
 
 /// Without these a contact has no collision.
 pub const COLLISION_NEEDS: &[ContactQuantity] = COLLISION.split_at(6).0;
@@ -45,22 +45,43 @@ impl InterpretedMechanism {
         Ok(self.has(request).then_some(length))
     }
 
-    /// Computes something of all contacts of the mechanism, for one routine serves every choice of them; `false` where
-    /// it cannot be told of some, of which these may be none.
-    fn of_all_contacts(
+    /// Computes something of several contacts, pair of shapes by pair, for one routine serves every choice of contacts of a
+    /// pair: each number with its contact, the quantity and its place there. `false` where it cannot be told of some, of
+    /// which these may be none.
+    fn of_several(
         &self,
         contacts: &[usize],
         what: OfSeveral,
-        expected: usize,
         state: &State<'_>,
-        with: impl FnMut(usize, f64),
+        mut with: impl FnMut(usize, ContactQuantity, usize, f64),
     ) -> Result<bool, StateError> {
         self.check(state)?;
         for &contact in contacts {
             self.exists(ComponentKind::Contact, contact)?;
         }
-        let all: Vec<usize> = (0..self.model.contacts.len()).collect();
-        Ok(self.compute_together(what, &all, expected, state, with).is_ok())
+        let pair = |contact: usize| self.model.contacts[contact].first_of_pair;
+        let mut asked: Vec<Option<usize>> = contacts.iter().map(|&contact| pair(contact)).collect();
+        asked.sort_unstable();
+        asked.dedup();
+        for one in asked {
+            let all: Vec<usize> =
+                (0..self.model.contacts.len()).filter(|&contact| pair(contact) == one).collect();
+            let slots: Vec<(usize, ContactQuantity, usize)> = all
+                .iter()
+                .flat_map(|&contact| what.of_each().iter().map(move |&quantity| (contact, quantity)))
+                .flat_map(|(contact, quantity)| {
+                    (0..self.size(contact, quantity)).map(move |place| (contact, quantity, place))
+                })
+                .collect();
+            let set = |index: usize, number: f64| {
+                let (contact, quantity, place) = slots[index];
+                with(contact, quantity, place, number);
+            };
+            if self.compute_together(what, &all, slots.len(), state, set).is_err() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     fn vector_of_contact(
@@ -299,16 +320,11 @@ impl Contacts for InterpretedMechanism {
         check_length(distances, contacts.len(), "the distances")?;
         if contacts.len() > 1 {
             let mut known = vec![Distance::default(); self.model.contacts.len()];
-            let slots: Vec<(usize, ContactQuantity)> = (0..known.len())
-                .flat_map(|contact| NEAR.map(|quantity| (contact, quantity)))
-                .filter(|&(contact, quantity)| self.size(contact, quantity) > 0)
-                .collect();
-            let set = |index: usize, length: f64| {
-                let (contact, quantity) = slots[index];
+            let set = |contact: usize, quantity: ContactQuantity, _: usize, length: f64| {
                 let Distance { gap, validity } = &mut known[contact];
                 *if quantity == ContactQuantity::Gap { gap } else { validity } = Some(length);
             };
-            if self.of_all_contacts(contacts, OfSeveral::Near, slots.len(), state, set)? {
+            if self.of_several(contacts, OfSeveral::Near, state, set)? {
                 distances
                     .iter_mut()
                     .zip(contacts)
@@ -323,6 +339,35 @@ impl Contacts for InterpretedMechanism {
         Ok(())
     }
 
+    fn pair(&self, contact: usize) -> Option<usize> {
+        self.model.contacts.get(contact)?.first_of_pair
+    }
+
+    fn clearances(
+        &self,
+        pairs: &[usize],
+        state: &State<'_>,
+        clearances: &mut [f64],
+    ) -> Result<(), StateError> {
+        check_length(clearances, pairs.len(), "the clearances")?;
+        for &pair in pairs {
+            self.exists(ComponentKind::Contact, pair)?;
+            if self.size(pair, ContactQuantity::Clearance) == 0 {
+                return Err(StateError::Undefined { what: "clearance of this contact" });
+            }
+        }
+        let all: Vec<usize> = (0..self.model.contacts.len())
+            .filter(|&contact| self.size(contact, ContactQuantity::Clearance) > 0)
+            .collect();
+        let mut known = vec![0.0; all.len()];
+        self.check(state)?;
+        let set = |index: usize, length: f64| known[index] = length;
+        self.compute_together(OfSeveral::Clear, &all, all.len(), state, set)?;
+        let place = |pair: &usize| all.binary_search(pair).map_or(0.0, |place| known[place]);
+        clearances.iter_mut().zip(pairs).for_each(|(clearance, pair)| *clearance = place(pair));
+        Ok(())
+    }
+
     fn contact_velocities(
         &self,
         contacts: &[usize],
@@ -330,11 +375,13 @@ impl Contacts for InterpretedMechanism {
         velocities: &mut [Vector3<f64>],
     ) -> Result<(), StateError> {
         check_length(velocities, contacts.len(), "the velocities")?;
-        if contacts.len() > 1 {
+        let have = |contact: &usize| self.size(*contact, ContactQuantity::Velocity) == 3;
+        if contacts.len() > 1 && contacts.iter().all(have) {
             let mut known = vec![Vector3::zeros(); self.model.contacts.len()];
-            let expected = 3 * known.len();
-            let set = |index: usize, number: f64| known[index / 3][index % 3] = number;
-            if self.of_all_contacts(contacts, OfSeveral::Moving, expected, state, set)? {
+            let set = |contact: usize, _: ContactQuantity, place: usize, number: f64| {
+                known[contact][place] = number;
+            };
+            if self.of_several(contacts, OfSeveral::Moving, state, set)? {
                 velocities
                     .iter_mut()
                     .zip(contacts)

@@ -135,18 +135,27 @@ pub enum OfSeveral {
     Near,
     /// the velocities
     Moving,
+    /// the clearances of pairs of shapes
+    Clear,
 }
 
 impl OfSeveral {
+    /// What is asked of each contact, in order.
+    pub fn of_each(self) -> &'static [ContactQuantity] {
+        match self {
+            OfSeveral::Closed => &OF_EACH,
+            OfSeveral::Near => &NEAR,
+            OfSeveral::Moving => &[ContactQuantity::Velocity],
+            OfSeveral::Clear => &[ContactQuantity::Clearance],
+        }
+    }
+
     /// What is asked of contacts, in order.
     fn quantities(self, contacts: &[usize]) -> Vec<Quantity> {
-        let (whole, of_each): (&[Quantity], &[ContactQuantity]) = match self {
-            OfSeveral::Closed => (&TOGETHER, &OF_EACH),
-            OfSeveral::Near => (&[], &NEAR),
-            OfSeveral::Moving => (&[], &[ContactQuantity::Velocity]),
-        };
-        let each = |&contact: &usize| of_each.iter().map(move |&of| Quantity::Contact(contact as u32, of));
-        whole.iter().copied().chain(contacts.iter().flat_map(each)).collect()
+        let whole: &[Quantity] = if self == OfSeveral::Closed { &TOGETHER } else { &[] };
+        let of =
+            |&contact: &usize| self.of_each().iter().map(move |&of| Quantity::Contact(contact as u32, of));
+        whole.iter().copied().chain(contacts.iter().flat_map(of)).collect()
     }
 }
 

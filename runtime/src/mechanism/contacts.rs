@@ -164,6 +164,34 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         }
         Ok(())
     }
+    /// The number of the first contact of the same two shapes, where these have many contacts and a clearance; `None`
+    /// elsewhere.
+    fn pair(&self, contact: usize) -> Option<usize> {
+        let _ = contact;
+        None
+    }
+    /// Bounds from below on how far pairs of shapes are apart, m, by the number of the first contact of each
+    /// ([`Contacts::pair`]): none of the contacts of a pair touches as long as its clearance is positive (docs/theory.md,
+    /// 16.14).
+    ///
+    /// # Errors
+    ///
+    /// As those of the single methods, and [`StateError::Undefined`] for a contact that is not the first of such a pair.
+    fn clearances(
+        &self,
+        pairs: &[usize],
+        state: &State<'_, T>,
+        clearances: &mut [T],
+    ) -> Result<(), StateError> {
+        check_length(clearances, pairs.len(), "the clearances")?;
+        match pairs {
+            [] => Ok(()),
+            _ => {
+                let _ = state;
+                Err(StateError::Undefined { what: "clearance of this contact" })
+            }
+        }
+    }
     /// Friction and restitution that the model states for a contact; `None` where it states none. A simulation
     /// takes it where its options say nothing else.
     fn surface(&self, contact: usize) -> Option<Surface<T>> {

@@ -1,5 +1,7 @@
 //! Planar bodies written by hand, for tests of the simulation.
 
+pub mod counted;
+
 use hodograph::generated::{
     Contact, Resolved, closed_contact, kept_contact, resolve, resolve_without_collision, slip_noise,
 };

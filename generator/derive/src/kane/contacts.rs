@@ -21,6 +21,8 @@ pub struct ContactForms {
     pub gap: Option<Expr>,
     /// how far the place of contact is within the features that touch, where these end
     pub validity: Option<Expr>,
+    /// a bound from below on how far the two shapes are apart, where the contact is the first of their many
+    pub clearance: Option<Expr>,
     /// whether there is no velocity along the second tangential axis, whatever the speeds.
     pub planar: bool,
     /// unit forces along the axes of the basis, if they act on nothing but the mechanism
@@ -70,7 +72,8 @@ pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact, along: Along) ->
     });
     let gap = contact.gap.as_ref().map(|gap| k.scalar(gap));
     let validity = contact.validity.as_ref().map(|validity| k.scalar(validity));
-    ContactForms { basis, rows, gap, validity, planar, forces, turning }
+    let clearance = contact.clearance.as_ref().map(|clearance| k.scalar(clearance));
+    ContactForms { basis, rows, gap, validity, clearance, planar, forces, turning }
 }
 
 /// A vector along the contact basis.

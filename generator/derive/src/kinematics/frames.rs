@@ -59,7 +59,12 @@ pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
         if let Against::Velocity(v) = &contact.against {
             scan.vector(v);
         }
-        contact.gap.iter().chain(&contact.validity).for_each(|length| scan.scalar(length));
+        contact
+            .gap
+            .iter()
+            .chain(&contact.validity)
+            .chain(&contact.clearance)
+            .for_each(|length| scan.scalar(length));
     }
     used
 }

@@ -81,6 +81,13 @@ impl Contacts for NumericMechanism {
         finite([gap]).map(|[gap]| Some(gap))
     }
 
+    fn validity(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
+        self.exists(ComponentKind::Contact, contact)?;
+        let Some(validity) = &self.model.contacts[contact].validity else { return Ok(None) };
+        let validity = self.still(state, |values| Ok(values.scalar(validity, Level::Motion)?.re))?;
+        finite([validity]).map(|[validity]| Some(validity))
+    }
+
     fn surface(&self, contact: usize) -> Option<Surface<f64>> {
         stated_surface(&self.model, contact)
     }

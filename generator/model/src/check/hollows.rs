@@ -61,11 +61,7 @@ fn narrowest(
             let [Some(east), Some(west), Some(north), Some(south), Some([p, q])] = around else { continue };
             let [xx, xy, yy] = [east[0] - west[0], north[0] - south[0], north[1] - south[1]]
                 .map(|difference| difference / (2.0 * h));
-            // the greatest eigenvalue of the curvature: the second derivatives beside 1 + p^2, p q, 1 + q^2, over the root
-            let (e, f, g, steep) = (1.0 + p * p, p * q, 1.0 + q * q, (1.0 + p * p + q * q).sqrt());
-            let mean = (xx * g - 2.0 * xy * f + yy * e) / (2.0 * steep.powi(3));
-            let gauss = (xx * yy - xy * xy) / steep.powi(4);
-            let curvature = mean + (mean * mean - gauss).max(0.0).sqrt();
+            let curvature = greatest_curvature([p, q], [xx, xy, yy]);
             if curvature > tightest.map_or(1.0 / radius, |(radius, _)| 1.0 / radius) {
                 tightest = Some((1.0 / curvature, [x, y]));
             }
@@ -85,4 +81,13 @@ fn narrowest(
     );
     let span = contact.point_span.to(contact.against_span);
     Ok(Some(Diagnostic::new(codes::NARROW, span, message).related(ground.span, "this ground").help(help)))
+}
+
+/// The greatest curvature of a surface z = h(x, y), upwards: the greatest eigenvalue of the second derivatives xx, xy, yy
+/// beside the matrix 1 + p^2, p q, 1 + q^2 of its slopes, over the length of (p, q, 1).
+fn greatest_curvature([p, q]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> f64 {
+    let (e, f, g, steep) = (1.0 + p * p, p * q, 1.0 + q * q, (1.0 + p * p + q * q).sqrt());
+    let mean = (xx * g - 2.0 * xy * f + yy * e) / (2.0 * steep.powi(3));
+    let gauss = (xx * yy - xy * xy) / steep.powi(4);
+    mean + (mean * mean - gauss).max(0.0).sqrt()
 }

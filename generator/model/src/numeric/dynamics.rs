@@ -218,19 +218,17 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
 
 fn contact_values(views: &Views<'_>, contact: &Contact) -> Result<ContactEvaluation, Failure> {
     let partial_velocities = views.partials(|values| values.contact_velocity(contact))?;
+    let length = |of: &Option<Scalar>| -> Result<Option<f64>, Failure> {
+        of.as_ref().map(|of| Ok(views.now.scalar(of, Level::Motion)?.re)).transpose()
+    };
     Ok(ContactEvaluation {
         normal: values(views.now.vector(&contact.normal, Level::Motion)?),
         velocity: values(views.now.contact_velocity(contact)?),
         remainder: values(views.rest.contact_velocity(contact)?),
         partial_velocities,
-        gap: match &contact.gap {
-            Some(gap) => Some(views.now.scalar(gap, Level::Motion)?.re),
-            None => None,
-        },
-        validity: match &contact.validity {
-            Some(validity) => Some(views.now.scalar(validity, Level::Motion)?.re),
-            None => None,
-        },
+        gap: length(&contact.gap)?,
+        validity: length(&contact.validity)?,
+        clearance: length(&contact.clearance)?,
         normal_rate: accelerations(views.onward.vector(&contact.normal, Level::Motion)?),
         acceleration: accelerations(views.onward.contact_velocity(contact)?),
         turning: contact.turning.map(|frames| turning_values(views, frames)).transpose()?,

@@ -100,6 +100,8 @@ pub struct ContactEvaluation {
     pub gap: Option<f64>,
     /// validity, m, where the features that touch end
     pub validity: Option<f64>,
+    /// clearance of the two shapes, m, where they have one
+    pub clearance: Option<f64>,
     /// rate of the normal
     pub normal_rate: [f64; 3],
     /// rate of the relative velocity while the independent speeds stay, m/s^2

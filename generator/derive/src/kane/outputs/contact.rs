@@ -116,6 +116,10 @@ impl Writer<'_, '_> {
             let nodes = self.nodes([validity]);
             self.put(of(ContactQuantity::Validity), 1, 1, nodes);
         }
+        if let Some(clearance) = &forms.clearance {
+            let nodes = self.nodes([clearance]);
+            self.put(of(ContactQuantity::Clearance), 1, 1, nodes);
+        }
         let work: Vec<Node> = columns
             .iter()
             .map(|column| {

@@ -36,7 +36,7 @@ pub fn vanishing(m: &Mechanism) -> Option<Diagnostic> {
     }
     for contact in &m.contacts {
         look(&mut nodes, contact.normal_span, &mut |nodes| nodes.vector(&contact.normal).map(drop));
-        for length in contact.gap.iter().chain(&contact.validity) {
+        for length in contact.gap.iter().chain(&contact.validity).chain(&contact.clearance) {
             look(&mut nodes, contact.gap_span, &mut |nodes| nodes.scalar(length).map(drop));
         }
     }

@@ -99,6 +99,8 @@ impl Lowering<'_> {
             without_gap,
             validity: None,
             tangent: None,
+            clearance: None,
+            first_of_pair: None,
             gap_span,
             surface,
             law,

@@ -408,6 +408,11 @@ pub struct Contact {
     pub validity: Option<Scalar>,
     /// the first tangent, a unit vector across the normal; none where the derivation chooses one
     pub tangent: Option<Vector>,
+    /// a bound from below on how far its two shapes are apart, m: while it is positive none of their contacts touches;
+    /// only the first of many contacts of a pair has it
+    pub clearance: Option<Scalar>,
+    /// the number of the contact that has the clearance of the same two shapes
+    pub first_of_pair: Option<usize>,
     /// where the gap is stated; else where the contact is declared
     pub gap_span: Span,
     /// friction and restitution, where the model states them

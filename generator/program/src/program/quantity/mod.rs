@@ -103,6 +103,8 @@ pub enum ContactQuantity {
     Gap,
     /// how far the contact point is inside the features that touch (1), only if these are bounded
     Validity,
+    /// a bound from below on how far the two shapes are apart (1); of the first contact of shapes that have many
+    Clearance,
     /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
     PrescribedWork,
     /// angular velocity of the striking body relative to the struck one (3) in the contact basis; this and

@@ -410,6 +410,19 @@ pub const CONTACT: &[(C, Description)] = &[
         },
     ),
     (
+        C::Clearance,
+        Description {
+            word: "clearance",
+            title: "clearance of both shapes",
+            symbol: "c",
+            unit: "m",
+            shape: [Extent::Count(1), Extent::Count(1)],
+            entries: Entries::Scalar,
+            offer: Offer::Answered,
+            ..PLAIN
+        },
+    ),
+    (
         C::Velocity,
         Description {
             word: "velocity",

@@ -10,6 +10,7 @@ use super::super::Lowering;
 use super::boxes;
 use super::capsule_on_box;
 use super::capsule_on_polytope;
+use super::clearance;
 use super::closed_forms::touches;
 use super::ellipsoids;
 use super::features::Touch;
@@ -49,6 +50,11 @@ impl Lowering<'_> {
         };
         let readable = touches.is_some() && self.mistakes() == before;
         let (ids, touches) = touches.map_or((None, Vec::new()), |(ids, touches)| (Some(ids), touches));
+        let mut clearance = ids.and_then(|ids| {
+            let pair = ids.map(|id| &self.out.shapes[id.0]);
+            clearance::of_pair(pair, touches.len(), &mut self.out.definitions, record.name.span)
+        });
+        let first_of_pair = clearance.as_ref().map(|_| self.out.contacts.len());
         let mut touches = touches.into_iter();
         for name in names {
             let parts = match (touches.next(), ids) {
@@ -72,6 +78,8 @@ impl Lowering<'_> {
                 without_gap: ids.is_none(),
                 validity: parts.validity,
                 tangent: parts.tangent,
+                clearance: clearance.take(),
+                first_of_pair,
                 gap_span: pair.field.value.span.to(struck),
                 surface,
                 law: law.clone(),

@@ -5,6 +5,7 @@ mod bodies;
 mod boxes;
 mod capsule_on_box;
 mod capsule_on_polytope;
+mod clearance;
 mod closed_forms;
 mod colours;
 mod contacts;

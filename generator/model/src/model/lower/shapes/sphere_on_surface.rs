@@ -1,18 +1,38 @@
 //! The contact of a sphere on a surface z = h(x, y) or on a curve y = h(x) (section 16.13 of docs/theory.md).
 //!
-//! The unknowns are the slopes of the surface where the sphere touches it: they tell how far from below the centre that
-//! is.
+//! The unknowns are the slopes of the surface where the sphere touches it: they tell how far that place is from the one
+//! below the centre.
 
 use super::algebra::*;
 use super::features::{Touch, axes_of};
 use super::heights::slope;
 use super::iterations::{Solution, either, is_found, solved};
+use super::separation::least;
 use super::shared::Shared;
 use crate::model::mechanism::{Definition, Height, Kind, Scalar, Shape, Vector};
 use crate::span::Span;
 
 /// Steps of the iteration.
 const STEPS: usize = 8;
+/// Where a ground is looked at under a sphere: distances from below the centre, and how far the sphere reaches below the
+/// centre there, in parts of its radius.
+const RINGS: [[(i64, i64); 2]; 4] =
+    [[(7, 25), (24, 25)], [(3, 5), (4, 5)], [(4, 5), (3, 5)], [(24, 25), (7, 25)]];
+/// Directions of these places, of unit length.
+const ON_CURVES: [[(i64, i64); 2]; 2] = [[(1, 1), (0, 1)], [(-1, 1), (0, 1)]];
+const ON_SURFACES: [[(i64, i64); 2]; 8] = [
+    [(1, 1), (0, 1)],
+    [(-1, 1), (0, 1)],
+    [(0, 1), (1, 1)],
+    [(0, 1), (-1, 1)],
+    [(20, 29), (21, 29)],
+    [(-20, 29), (21, 29)],
+    [(20, 29), (-21, 29)],
+    [(-20, 29), (-21, 29)],
+];
+/// By how much of its radius a sphere may be in the ground there: above the rounding of singles.
+const DEEPER: (i64, i64) = (1, 100_000);
+
 /// The contact; none for a surface whose slopes have no slope.
 pub fn between([sphere, surface]: [&Shape; 2], definitions: &mut Vec<Definition>, at: Span) -> Vec<Touch> {
     let mut shared = Shared::pair([sphere, surface], definitions, at);
@@ -39,6 +59,14 @@ struct Ground<'s, const N: usize> {
     level: Scalar,
     radius: Scalar,
     at: Span,
+}
+
+/// A place of the ground at which it is looked at.
+struct Look<const N: usize> {
+    /// the slopes that it would have if the sphere touched it there
+    slopes: [Scalar; N],
+    /// the level of a sphere that reaches down to it
+    level: Scalar,
 }
 
 /// A place of the ground that is found from slopes there.
@@ -129,12 +157,52 @@ impl<'s, const N: usize> Ground<'s, N> {
         })
     }
 
+    /// Below the centre, and at some places under the sphere that do not depend on where it touches: the slopes that the
+    /// ground would have if it were touched there, and the level of a sphere that reaches down to it.
+    fn looked_at(&self, shared: &mut Shared<'_>) -> Vec<Look<N>> {
+        let directions: &[[(i64, i64); 2]] = if N == 1 { &ON_CURVES } else { &ON_SURFACES };
+        let places =
+            RINGS.iter().flat_map(|ring| directions.iter().map(move |direction| (*ring, *direction)));
+        let below = ([(0, 1), (1, 1)], [(0, 1), (0, 1)]);
+        std::iter::once(below)
+            .chain(places)
+            .map(|([away, low], direction)| {
+                let parts = direction.map(|part| product([ratio(away.0, away.1), ratio(part.0, part.1)]));
+                let mut at = [integer(0), integer(0)];
+                for (i, at) in at.iter_mut().enumerate().take(N) {
+                    let there =
+                        all([self.place[i].clone(), product([parts[i].clone(), self.radius.clone()])]);
+                    *at = shared.scalar(there, "place under the sphere");
+                }
+                let level =
+                    all([self.height.value.at(&at), product([ratio(low.0, low.1), self.radius.clone()])]);
+                let level = shared.scalar(level, "level of a sphere that reaches down to a place");
+                let slopes = std::array::from_fn(|i| product([ratio(low.1, low.0), parts[i].clone()]));
+                Look { slopes, level }
+            })
+            .collect()
+    }
+
+    /// The slopes at the highest of these places.
+    fn start(looked_at: &[Look<N>], shared: &mut Shared<'_>) -> [Scalar; N] {
+        let mut looks = looked_at.iter();
+        let Some(first) = looks.next() else { return std::array::from_fn(|_| integer(0)) };
+        let (mut slopes, mut level) = (first.slopes.clone(), first.level.clone());
+        for look in looks {
+            let higher = step(less(look.level.clone(), level.clone()));
+            let higher = shared.scalar(higher, "whether a place is higher");
+            slopes = std::array::from_fn(|i| {
+                let slope = either(&higher, look.slopes[i].clone(), slopes[i].clone());
+                shared.scalar(slope, "slope at the highest place")
+            });
+            level = shared.scalar(greater(level, look.level.clone()), "level at the highest place");
+        }
+        slopes
+    }
+
     fn touch(&self, sphere: &Shape, shared: &mut Shared<'_>) -> Touch {
-        let start: [Scalar; N] = {
-            let mut below = [integer(0), integer(0)];
-            below.iter_mut().zip(&self.place).for_each(|(below, place)| *below = place.clone());
-            std::array::from_fn(|i| self.height.slopes[i].at(&below))
-        };
+        let looked_at = self.looked_at(shared);
+        let start = Self::start(&looked_at, shared);
         let by = |slopes: &[Scalar; N], step: &[Scalar; N], share: (i64, i64)| -> [Scalar; N] {
             std::array::from_fn(|i| {
                 less(slopes[i].clone(), product([ratio(share.0, share.1), step[i].clone()]))
@@ -169,15 +237,21 @@ impl<'s, const N: usize> Ground<'s, N> {
         let matrix = self.matrix(&foot, shared);
         let trace = all((0..N).map(|i| matrix[i][i].clone()));
         let fits = lesser(determinant(&matrix), trace);
-        let found = product([found, step(fits)]);
+        let touching = quotient(self.radius.clone(), foot.length.clone(), self.at);
+        let highest = all([self.height.value.at(&foot.at), touching]);
+        let highest = shared.scalar(highest, "level of a sphere that touches");
+        // it touches here first, unless it is in the ground at a place where it would touch before
+        let level = shared.scalar(greater(self.level.clone(), highest.clone()), "level of the centre");
+        let clearances = looked_at.into_iter().map(|look| less(level.clone(), look.level));
+        let clear =
+            all([least(clearances.collect()), product([ratio(DEEPER.0, DEEPER.1), self.radius.clone()])]);
+        let found = product([found, step(lesser(fits, clear))]);
         let found = shared.scalar(found, "whether the sphere touches at one place only");
         let length = shared.scalar(quotient(foot.length.clone(), found, self.at), "length of the normal");
         let terms = (0..N).map(|i| opposite(&scaled(slopes[i].clone(), &self.across[i])));
         let steepest = total(std::iter::once(self.up.clone()).chain(terms));
         let normal = scaled(quotient(integer(1), length.clone(), self.at), &steepest);
         let normal = shared.vector(normal, "normal of the ground");
-        let highest =
-            all([self.height.value.at(&foot.at), quotient(self.radius.clone(), length.clone(), self.at)]);
         let gap = quotient(less(self.level.clone(), highest), length, self.at);
         let point = sphere.at.plus(opposite(&scaled(self.radius.clone(), &normal)));
         Touch::endless(point, normal, gap)
