@@ -1,8 +1,6 @@
 //! The same query on the three engines: embedded, Ballista in one process, and a scheduler with two executors
 //! as processes of their own, of which one is killed half-way.
 
-mod common;
-
 use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
 use std::path::Path;
@@ -11,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use tonic::transport::{Certificate, ClientTlsConfig, Endpoint, Identity};
 
-use common::{collisions, digest, fails, run, succeeds, tool};
+use crate::common::{collisions, digest, fails, run, succeeds, tool};
 
 /// A process that ends with the test.
 struct Process(Child);

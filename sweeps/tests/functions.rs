@@ -1,15 +1,13 @@
 //! The functions against the generated module, the solver and answers that are known.
 
-mod sql;
-
 use std::sync::Arc;
 
+use crate::sql::{numbers, query, texts};
 use datafusion::arrow::array::{Array, AsArray};
 use datafusion::arrow::datatypes::{Int32Type, UInt64Type};
 use hodograph::nalgebra::Vector3;
 use hodograph::{Law, ReducedMatrix, Surface};
 use hodograph_sweeps::session::{Engine, Setup};
-use sql::{numbers, query, texts};
 
 hodograph::mechanism!("../models/two_sleds.mech");
 use two_sleds::{Coordinates, Parameters, Speeds, TwoSleds};

@@ -1,14 +1,12 @@
 //! Every function of every shipped model has the bits of the generated module.
 
-mod sql;
-
 use std::fmt::Write;
 
+use crate::sql::query;
 use datafusion::arrow::array::{AsArray, RecordBatch, StructArray};
 use datafusion::arrow::datatypes::{Float64Type, Int32Type};
 use hodograph::{ComponentKind, Contacts, Law, State, Surface};
 use hodograph_sweeps::models::shipped;
-use sql::query;
 
 const ROWS: usize = 400;
 

@@ -1,13 +1,11 @@
 //! Motions as a function of columns: the bits of the simulation, and errors as answers of their rows.
 
-mod sql;
-
+use crate::sql::{numbers, query, texts};
 use datafusion::arrow::array::{Array, AsArray};
 use datafusion::arrow::datatypes::Int64Type;
 use hodograph::{ComponentKind, Law, Mechanism, Surface};
 use hodograph_models::free_box_corner::FreeBoxCorner;
 use hodograph_simulation::{Batch, Case, ContactLaw, Options, simulate_many};
-use sql::{numbers, query, texts};
 
 #[tokio::test]
 async fn motions_have_the_bits_of_the_simulation() {

@@ -1,10 +1,8 @@
 //! The tool: what it writes, how it goes on after an interruption, and what it says about mistakes.
 
-mod common;
-
 use std::fs;
 
-use common::{collisions, digest, fails, run, succeeds, tool};
+use crate::common::{collisions, digest, fails, run, succeeds, tool};
 
 const ROW_BY_ROW: &str = "SELECT i, two_sleds_collide(named_struct('mu', uniform(i, 0, 0), 'e', 0.5, 'law', 'poisson')) AS c FROM rows(20000)";
 

@@ -45,7 +45,8 @@ fn mass_matrix_of_the_double_pendulum() {
     assert_eq!(operations.iter().filter(round).count(), 1);
 }
 
-/// The gaps and validities of all 52 contacts of two boxes, in one pass and one by one: docs/theory.md, 16.10.
+/// The gaps and validities of all 52 contacts of two boxes, in one pass and one by one, and their clearance: docs/theory.md,
+/// 16.10 and 16.14.
 #[test]
 fn gaps_of_two_boxes() {
     let model = Model::load("../simulation/models/crate_on_table");
@@ -65,4 +66,8 @@ fn gaps_of_two_boxes() {
     let alone: usize = (0..52).map(|contact| count(&near(contact))).sum();
     println!("{together} operations together, {alone} alone");
     assert!(together < 2600 && alone > 15_000, "{together} together, {alone} alone");
+    // of boxes that are apart only this is computed, once its two radii are known
+    let clearance = count(&[Quantity::Contact(0, ContactQuantity::Clearance)]);
+    println!("{clearance} operations for the clearance");
+    assert!(clearance < 20, "{clearance}");
 }

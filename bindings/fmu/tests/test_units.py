@@ -34,7 +34,7 @@ STEP = 0.01
 
 def by_the_tool(model, options, until):
     """The rows of samples, by name of column, and the number of events."""
-    command = [os.environ["HODOGRAPH"], "simulate", str(model), "--until", str(until), "--step", str(STEP), "--format", "csv"]
+    command = [os.environ["HODOGRAPH_TOOL"], "simulate", str(model), "--until", str(until), "--step", str(STEP), "--format", "csv"]
     said = subprocess.run(command + options, capture_output=True, text=True, check=True).stdout
     rows = list(csv.DictReader(io.StringIO(said)))
     samples = [row for row in rows if not row["event"]]

@@ -1,5 +1,4 @@
 //! Runs the tool and reads what it says.
-#![allow(dead_code)]
 
 use std::path::Path;
 use std::process::{Command, Output};

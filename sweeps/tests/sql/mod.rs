@@ -1,5 +1,4 @@
 //! Queries inside the test's own process.
-#![allow(dead_code)]
 
 use datafusion::arrow::array::{AsArray, RecordBatch};
 use datafusion::arrow::datatypes::Float64Type;
