@@ -1,17 +1,20 @@
 //! Contacts that a module reaches by number alone: the features of two boxes, and of a capsule and a box (docs/theory.md,
 //! 16.10 and 16.11); and contacts whose routine solves an equation (16.13).
 
-use hodograph::{Contacts, Law, State};
+use hodograph::nalgebra::Vector3;
+use hodograph::{ClosedContacts, ComponentKind, Contacts, Distance, Law, State, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_random::Random;
 
 hodograph::mechanism!("../models/shapes/ball_on_waves.mech");
+hodograph::mechanism!("../models/shapes/dominoes.mech");
 hodograph::mechanism!("../simulation/models/crate_on_table.mech");
 hodograph::mechanism!("../simulation/models/egg_on_egg.mech");
 hodograph::mechanism!("../simulation/models/log_on_table.mech");
 
 use ball_on_waves::BallOnWaves;
 use crate_on_table::CrateOnTable;
+use dominoes::Dominoes;
 use egg_on_egg::EggOnEgg;
 use log_on_table::LogOnTable;
 
@@ -74,5 +77,84 @@ fn agree(module: &dyn Contacts<f64>, name: &str, contacts: usize) {
             });
             assert_eq!(one, other);
         }
+    }
+}
+
+/// What several contacts answer in one pass.
+#[derive(Debug, PartialEq)]
+struct Several {
+    distances: Vec<Distance>,
+    velocities: Vec<Vector3<f64>>,
+    closed: [Vec<f64>; 6],
+}
+
+fn several(m: &dyn Contacts<f64>, contacts: &[usize], state: &State<'_>) -> Result<Several, StateError> {
+    let [n, p] = [ComponentKind::Coordinate, ComponentKind::Speed].map(|kind| m.count(kind));
+    let k = contacts.len();
+    let mut distances = vec![Distance::default(); k];
+    m.gaps(contacts, state, &mut distances)?;
+    let mut velocities = vec![Vector3::zeros(); k];
+    m.contact_velocities(contacts, state, &mut velocities)?;
+    let mut closed = [n, p, 3 * k * p, 3 * k * p, 3 * k, 3 * k].map(|length| vec![0.0; length]);
+    let [rates, accelerations, partial_velocities, responses, speeds, free] = &mut closed;
+    let mut slices = ClosedContacts {
+        coordinate_rates: rates,
+        accelerations,
+        partial_velocities,
+        responses,
+        velocities: speeds,
+        free_accelerations: free,
+    };
+    m.closed_contacts(contacts, state, &mut slices)?;
+    Ok(Several { distances, velocities, closed })
+}
+
+/// Modules compute pair of shapes by pair, in whatever order contacts are asked for; the numbers are those of the single
+/// methods, and of the program.
+#[test]
+fn contacts_of_several_pairs_in_one_pass() {
+    agree_on_pairs(&Dominoes::<f64>::default(), "models/shapes/dominoes");
+}
+
+fn agree_on_pairs(module: &dyn Contacts<f64>, name: &str) {
+    let path = format!("{}/../{name}.mech", env!("CARGO_MANIFEST_DIR"));
+    let interpreted: InterpretedMechanism = InterpretedMechanism::read(path.as_ref()).unwrap();
+    let count = module.count(ComponentKind::Contact);
+    let pairs: Vec<Option<usize>> = (0..count + 1).map(|contact| module.pair(contact)).collect();
+    assert_eq!(pairs, (0..count + 1).map(|contact| interpreted.pair(contact)).collect::<Vec<_>>());
+    let mut firsts: Vec<usize> = pairs.iter().copied().flatten().collect();
+    firsts.dedup();
+    assert!(firsts.len() > 2 && pairs.last() == Some(&None), "{pairs:?}");
+    let mut random = Random::named(name);
+    let [n, p] = [ComponentKind::Coordinate, ComponentKind::Speed].map(|kind| module.count(kind));
+    for number in 0..200 {
+        let q: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
+        let u: Vec<f64> = (0..p).map(|_| random.between(-1.0, 1.0)).collect();
+        let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+        let asked: Vec<usize> = (0..number % 7 + 2).map(|_| random.below(count)).collect();
+        let found = several(module, &asked, &state);
+        assert_eq!(found, several(&interpreted, &asked, &state), "{asked:?}");
+        let found = found.unwrap();
+        for (&contact, (distance, velocity)) in
+            asked.iter().zip(found.distances.iter().zip(&found.velocities))
+        {
+            assert_eq!(distance.gap, module.gap(contact, &state).unwrap());
+            assert_eq!(distance.validity, module.validity(contact, &state).unwrap());
+            assert_eq!(*velocity, module.contact_velocity(contact, &state).unwrap());
+        }
+        let mut clearances = [vec![0.0; firsts.len()], vec![0.0; firsts.len()]];
+        module.clearances(&firsts, &state, &mut clearances[0]).unwrap();
+        interpreted.clearances(&firsts, &state, &mut clearances[1]).unwrap();
+        assert_eq!(clearances[0], clearances[1]);
+    }
+    // numbers that no contact has, and contacts that are not the first of a pair
+    let (q, u) = (vec![0.1; n], vec![0.0; p]);
+    let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+    for m in [module, &interpreted as &dyn Contacts<f64>] {
+        let missing = Err(StateError::Missing { kind: ComponentKind::Contact, index: count });
+        assert_eq!(m.gaps(&[0, count], &state, &mut [Distance::default(); 2]), missing);
+        assert_eq!(m.clearances(&[count], &state, &mut [0.0]), missing);
+        let undefined = Err(StateError::Undefined { what: "clearance of this contact" });
+        assert_eq!(m.clearances(&[firsts[0] + 1], &state, &mut [0.0]), undefined);
     }
 }
