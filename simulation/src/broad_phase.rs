@@ -1,8 +1,8 @@
-//! Pairs of shapes that stay apart during a step: none of their contacts is looked at (docs/theory.md, section 17.19).
+//! Pairs of shapes that stay apart during a step: none of their contacts is looked at (docs/theory.md, section 17.20).
 //!
 //! A clearance is a bound from below on how far two shapes are apart. It is examined over a step like a gap; where it
-//! stays positive, no contact of the pair can touch. The step itself does not depend on it, so that a motion has the same
-//! bits with and without this look.
+//! stays positive, no contact of the pair can touch. No step ends at its zero: a pair that comes near within a step is
+//! examined in this very step.
 
 use hodograph::{Distance, State, StateError};
 
@@ -20,6 +20,9 @@ impl Transition<'_> {
     /// what nine points resolve.
     pub(crate) fn stay_apart(&self, step: &Step, turns: f64) -> Vec<usize> {
         let mut pairs = self.open_pairs();
+        if pairs.is_empty() {
+            return pairs;
+        }
         let Some(first) = self.clear_by(&pairs, step, 0.0) else { return Vec::new() };
         let mut clear = first.iter().map(|&by| by > 0.0);
         pairs.retain(|_| clear.next().unwrap_or(false));
@@ -59,7 +62,9 @@ impl Transition<'_> {
         let mut pairs: Vec<usize> = contacts.iter().filter_map(|&one| self.first_of_pair(one)).collect();
         pairs.dedup();
         let mut clearances = vec![0.0; pairs.len()];
-        self.mechanism.clearances(&pairs, state, &mut clearances)?;
+        if !pairs.is_empty() {
+            self.mechanism.clearances(&pairs, state, &mut clearances)?;
+        }
         let least = CLEAR * self.front.scales.length;
         let apart: Vec<usize> =
             pairs.into_iter().zip(clearances).filter(|(_, by)| *by > least).map(|(first, _)| first).collect();

@@ -56,11 +56,16 @@ fn a_crate_is_thrown_onto_another() {
     assert!(share < 0.9, "{share}");
 }
 
+/// Four bricks of which each may strike each.
+fn column() -> InterpretedMechanism {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/models/column.mech");
+    InterpretedMechanism::read(path.as_ref()).unwrap()
+}
+
 /// A column of four bricks of which each may strike each: neighbours touch, the others do not come near.
 #[test]
 fn a_column_costs_what_touches() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/models/column.mech");
-    let column = InterpretedMechanism::read(path.as_ref()).unwrap();
+    let column = column();
     let mut random = Random::named("column");
     for number in 0..5 {
         let (mut q, mut u) = ([0.0; 12], [0.0; 12]);
@@ -76,8 +81,7 @@ fn a_column_costs_what_touches() {
 /// Bricks that are thrown at each other: what is far away may be what is struck next.
 #[test]
 fn thrown_bricks_meet() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/models/column.mech");
-    let column = InterpretedMechanism::read(path.as_ref()).unwrap();
+    let column = column();
     let mut random = Random::named("bricks");
     let (mut shares, mut events) = (0.0, 0);
     for number in 0..20 {

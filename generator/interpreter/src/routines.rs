@@ -166,8 +166,8 @@ type Asked = (OfSeveral, Vec<usize>);
 #[derive(Debug, Default)]
 struct Sets(RwLock<BTreeMap<Asked, Arc<Prepared>>>);
 
-/// So many sets are kept: more are rarely closed in one motion.
-const MOST_SETS: usize = 64;
+/// So many sets are kept: those of pairs of shapes, and more than are often closed in one motion.
+const MOST_SETS: usize = 512;
 
 impl Clone for Sets {
     fn clone(&self) -> Self {

@@ -184,12 +184,11 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         clearances: &mut [T],
     ) -> Result<(), StateError> {
         check_length(clearances, pairs.len(), "the clearances")?;
-        match pairs {
-            [] => Ok(()),
-            _ => {
-                let _ = state;
-                Err(StateError::Undefined { what: "clearance of this contact" })
-            }
+        let _ = state;
+        if pairs.is_empty() {
+            Ok(())
+        } else {
+            Err(StateError::Undefined { what: "clearance of this contact" })
         }
     }
     /// Friction and restitution that the model states for a contact; `None` where it states none. A simulation
