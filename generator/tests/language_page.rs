@@ -100,6 +100,7 @@ fn every_construct_has_an_example() {
         "half_space:",
         "surface: h*",
         "curve:",
+        "implicit:",
         "density:",
         "colour:",
         "axis:",

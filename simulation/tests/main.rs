@@ -19,6 +19,7 @@ mod exact;
 mod examples;
 mod exchange;
 mod faces;
+mod implicit;
 mod inclines;
 mod ledge;
 mod logs;

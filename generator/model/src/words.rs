@@ -110,6 +110,11 @@ pub const FIELDS: &[Word] = &[
     word("plane", "plane: N.z", "a plane with its normal"),
     word("half_space", "half_space: N.z", "what lies behind a plane with this normal"),
     word("curve", "curve: h*sin(k*x)", "y = h(x) in the plane of x and y"),
+    word(
+        "implicit",
+        "implicit: x^2 + y^2 - r^2",
+        "where a function of x, y and z vanishes; it is positive outside",
+    ),
     word("mu", "mu: 0.3", "the coefficient of friction"),
     word("e", "e: 0.5", "the coefficient of restitution, from 0 to 1"),
     word("law", "law: stronge", "the hypothesis of restitution: what e means"),

@@ -12,6 +12,7 @@ pub mod mcap_file;
 mod number;
 mod recording;
 mod rigid;
+mod sections;
 mod segments;
 mod setup;
 mod shapes;

@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
+use crate::sections::sections;
+
 /// Number of points of a circle.
 const CIRCLE_POINTS: usize = 40;
 /// Number of lines of a grid in each direction.
@@ -176,6 +178,13 @@ impl Outline {
             }
         }
         Outline { core: Vec::new(), round: 0.0, lines }
+    }
+
+    /// The part of a surface f(x, y, z) = 0 that is in a cube of a given width about the place.
+    pub fn implicit(place: Place, width: f64, f: impl Fn([f64; 3]) -> Option<f64>) -> Self {
+        let lines = sections(width, f).into_iter();
+        let lines = lines.map(|line| line.into_iter().map(|[x, y, z]| place.point(x, y, z)).collect());
+        Outline { core: Vec::new(), round: 0.0, lines: lines.collect() }
     }
 
     /// A part of a curve y = h(x) with a given width.

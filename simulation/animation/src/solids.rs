@@ -1,7 +1,9 @@
 //! Outlines of the shapes of a model, and of the planes of contacts without shapes.
 
 use hodograph::{Contacts, State as Borrowed};
-use hodograph_model::model::mechanism::{Against, FrameId, Height, Kind, Mechanism as Model, PointId, Shape};
+use hodograph_model::model::mechanism::{
+    Against, FrameId, Height, Kind, Mechanism as Model, PointId, Scalar, Shape,
+};
 use hodograph_model::numeric::hyper_dual::HyperDual;
 use hodograph_model::numeric::{Evaluator, Level, State, Views};
 use nalgebra::{Matrix3, Vector3};
@@ -126,7 +128,7 @@ impl Solids {
                 hexadecimal,
             );
             if let Some(outline) = local.outline(shape, frame.is_none()) {
-                let endless = shape.kind.is_flat() || matches!(shape.kind, Kind::Surface | Kind::Curve);
+                let endless = shape.kind.is_flat() || shape.kind.is_stated_by_place();
                 out.push(outline.shape(&shape.name, colour, *frame, endless));
             }
         }
@@ -230,6 +232,17 @@ impl Local<'_> {
                 let own = shape.height.as_ref()?;
                 Outline::curve(endless(1), self.extent, |x| height(own, x, 0.0))
             }
+            (Kind::Implicit, _) => {
+                let own = shape.function.as_ref()?;
+                let (centre, width) =
+                    if fixed { (self.middle, self.extent) } else { (place.at, 0.6 * self.extent) };
+                let off = centre - place.at;
+                let value = |at: [f64; 3]| {
+                    let at = [0, 1, 2].map(|i| at[i] + place.axes[i].dot(&off));
+                    value_of(self.values, &own.value_at(at)?)
+                };
+                Outline::implicit(Place { at: centre, ..place }, width, value)
+            }
             _ => return None,
         })
     }
@@ -251,7 +264,11 @@ pub fn places_of_shapes(model: &Model) -> Vec<bool> {
 
 /// The height of a surface at a place.
 fn height_at(values: &Evaluator<'_>, height: &Height, place: [f64; 2]) -> Option<f64> {
-    let value = values.scalar(&height.value_at(place)?, Level::Geometry).ok()?.re;
+    value_of(values, &height.value_at(place)?)
+}
+
+fn value_of(values: &Evaluator<'_>, scalar: &Scalar) -> Option<f64> {
+    let value = values.scalar(scalar, Level::Geometry).ok()?.re;
     value.is_finite().then_some(value)
 }
 

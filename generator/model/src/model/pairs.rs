@@ -84,8 +84,8 @@ pub fn contacts(striking: Outline, inside: bool, struck: Outline) -> Option<usiz
     match (striking.kind, struck.kind, inside) {
         (Sphere | Disc | Torus | Ellipsoid, Plane | HalfSpace, false) => Some(1),
         (Capsule | Cylinder | Cone, Plane | HalfSpace, false) => Some(2),
-        (Box, Plane | HalfSpace | Surface | Curve, false) => Some(8),
-        (Rectangle, Plane | HalfSpace | Curve, false) => Some(4),
+        (Box, Plane | HalfSpace | Surface | Curve | Implicit, false) => Some(8),
+        (Rectangle, Plane | HalfSpace | Curve | Implicit, false) => Some(4),
         // the vertices of both
         (Rectangle, Rectangle, false) => Some(8),
         // the vertices of both, and edges
@@ -96,14 +96,14 @@ pub fn contacts(striking: Outline, inside: bool, struck: Outline) -> Option<usiz
                 _ => 1,
             })
         }
-        (Polytope, Plane | HalfSpace | Surface | Curve, false) => Some(striking.vertices),
+        (Polytope, Plane | HalfSpace | Surface | Curve | Implicit, false) => Some(striking.vertices),
         (Capsule, Capsule, false) => Some(1),
         // its ends, and places between them at edges and vertices
         (Capsule, Box, false) => Some(2 + 12 + 8),
         (Capsule, Polytope, false) => Some(struck.edges.map_or(1, |edges| 2 + edges + struck.vertices)),
         (Capsule, Rectangle, false) => Some(2 + 4),
         (Sphere, Sphere | Capsule | Cylinder | Cone | Box | Rectangle | Disc | Torus | Polytope, false)
-        | (Sphere, Surface | Curve, false)
+        | (Sphere | Disc | Torus | Ellipsoid, Surface | Curve | Implicit, false)
         | (Sphere | Ellipsoid, Ellipsoid, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder, true) => Some(1),
         (Sphere, Box, true) => Some(6),

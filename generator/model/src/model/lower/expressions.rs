@@ -4,11 +4,12 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::super::mechanism::{CoordinateId, DefinitionId, Height, Scalar, Vector};
+use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::symbols::Value;
 use super::super::typed::{Traits, Typed, TypedValue};
 use super::Lowering;
+use super::shapes::PLACES;
 use super::sums::negated;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
@@ -100,8 +101,10 @@ impl Lowering<'_> {
 
     fn name(&mut self, name: &Name) -> Typed {
         let span = name.span;
-        if let Some(place) = ["x", "y"].iter().take(self.along_surface).position(|axis| *axis == name.text) {
-            let value = Scalar::Definition(Height::PLACES[place]);
+        if let Some(place) =
+            ["x", "y", "z"].iter().take(self.along_surface).position(|axis| *axis == name.text)
+        {
+            let value = Scalar::Definition(PLACES[place]);
             return Typed::scalar(value, Some(Dimension::of(1, 0, 0)), Traits::default(), span);
         }
         let constant_only = self.constant_only;

@@ -169,7 +169,7 @@ pub(super) struct Lowering<'a> {
     pub points: Vec<PointFacts>,
     /// only numbers and functions are allowed
     pub constant_only: bool,
-    /// so many of `x` and `y` stand for a place along a surface
+    /// so many of `x`, `y` and `z` stand for a place along a surface
     pub along_surface: usize,
     /// what is found out about dimensions
     pub(in crate::model::lower) balances: Balances,

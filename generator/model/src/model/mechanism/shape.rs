@@ -30,11 +30,13 @@ pub enum Kind {
     Surface,
     /// y = h(x) along the axes of a frame
     Curve,
+    /// f(x, y, z) = 0 along the axes of a frame; f is positive outside
+    Implicit,
 }
 
 impl Kind {
     /// All.
-    pub const ALL: [Kind; 14] = [
+    pub const ALL: [Kind; 15] = [
         Kind::Sphere,
         Kind::Capsule,
         Kind::Cylinder,
@@ -49,6 +51,7 @@ impl Kind {
         Kind::HalfSpace,
         Kind::Surface,
         Kind::Curve,
+        Kind::Implicit,
     ];
 
     /// Its word in models.
@@ -68,6 +71,7 @@ impl Kind {
             Kind::HalfSpace => "half_space",
             Kind::Surface => "surface",
             Kind::Curve => "curve",
+            Kind::Implicit => "implicit",
         }
     }
 
@@ -86,7 +90,8 @@ impl Kind {
             Kind::Ellipsoid => &["semi-axis along x", "semi-axis along y", "semi-axis along z"],
             Kind::Box => &["length along x", "length along y", "length along z"],
             Kind::Rectangle => &["length along x", "length along y"],
-            Kind::Polytope | Kind::Plane | Kind::HalfSpace | Kind::Surface | Kind::Curve => &[],
+            Kind::Polytope | Kind::Plane | Kind::HalfSpace => &[],
+            Kind::Surface | Kind::Curve | Kind::Implicit => &[],
         }
     }
 
@@ -98,7 +103,7 @@ impl Kind {
     /// Whether it lies along the axes of a frame.
     pub fn has_axes(self) -> bool {
         use Kind::*;
-        matches!(self, Ellipsoid | Box | Rectangle | Surface | Curve)
+        matches!(self, Ellipsoid | Box | Rectangle | Surface | Curve | Implicit)
     }
 
     /// Whether it is the boundary of a half space.
@@ -106,10 +111,18 @@ impl Kind {
         matches!(self, Kind::Plane | Kind::HalfSpace)
     }
 
+    /// Whether it is stated by an expression of the place, and may have no end.
+    pub fn is_stated_by_place(self) -> bool {
+        matches!(self, Kind::Surface | Kind::Curve | Kind::Implicit)
+    }
+
     /// With its article, for messages.
     pub fn with_article(self) -> String {
         let article = if self == Kind::Ellipsoid { "an" } else { "a" };
-        format!("{article} {}", self.word().replace('_', " "))
+        match self {
+            Kind::Implicit => "an implicit surface".to_owned(),
+            _ => format!("{article} {}", self.word().replace('_', " ")),
+        }
     }
 }
 
@@ -122,14 +135,17 @@ pub struct Anchor {
     pub by: Vector,
 }
 
-/// A height above a plane as a function of the place in it.
+/// A function of a place with N coordinates.
 #[derive(Clone, Debug)]
-pub struct Height {
-    /// the height, in which x and y stand for the place; [`Height::value_at`] gives it at one
+pub struct OfPlace<const N: usize> {
+    /// the function, in which x, y and z stand for the place; [`OfPlace::value_at`] gives it at one
     pub value: Scalar,
     /// its derivatives
-    pub slopes: [Scalar; 2],
+    pub slopes: [Scalar; N],
 }
+
+/// A height above a plane as a function of the place in it.
+pub type Height = OfPlace<2>;
 
 /// A shape.
 #[derive(Clone, Debug)]
@@ -156,6 +172,8 @@ pub struct Shape {
     pub vertices: Vec<Anchor>,
     /// of a surface or curve
     pub height: Option<Height>,
+    /// of an implicit surface: what vanishes on it, positive outside
+    pub function: Option<OfPlace<3>>,
     /// kg/m^3
     pub density: Option<Scalar>,
     /// red, green and blue, from 0 to 1

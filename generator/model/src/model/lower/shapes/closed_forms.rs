@@ -14,6 +14,7 @@ use crate::span::Span;
 pub fn touches(first: &Shape, inside: bool, second: &Shape, at: Span) -> Vec<Touch> {
     match (second.kind, inside) {
         (Kind::Plane | Kind::HalfSpace, _) => on_plane(first, second, at),
+        (Kind::Implicit, _) => corners(first).iter().filter_map(|p| on_implicit(p, second)).collect(),
         (Kind::Surface, _) => corners(first).iter().filter_map(|p| on_height(p, second, 2)).collect(),
         (Kind::Curve, _) => corners(first).iter().filter_map(|p| on_height(p, second, 1)).collect(),
         (Kind::Box, true) => in_box(first, second),
@@ -246,6 +247,20 @@ fn on_height(point: &Anchor, surface: &Shape, slopes: usize) -> Option<Touch> {
     let gap = quotient(less(dot(&d, &up), height.value.at(&places)), length.clone(), at);
     let normal = scaled(quotient(integer(1), length, at), &steepest);
     Some(Touch::endless(point.clone(), normal, gap))
+}
+
+/// A vertex near an implicit surface: f over the length of its gradient, which is the normal.
+fn on_implicit(point: &Anchor, surface: &Shape) -> Option<Touch> {
+    let function = surface.function.as_ref()?;
+    let axes = axes_of(surface);
+    let d = point.from(&surface.at);
+    let place = axes.each_ref().map(|e| dot(&d, e));
+    let gradient = function.slopes.each_ref().map(|slope| slope.at(&place));
+    let length = root(all(gradient.iter().cloned().map(square)));
+    let at = surface.span;
+    let gap = quotient(function.value.at(&place), length.clone(), at);
+    let along = total(axes.iter().zip(gradient).map(|(e, slope)| scaled(slope, e)));
+    Some(Touch::endless(point.clone(), scaled(quotient(integer(1), length, at), &along), gap))
 }
 
 fn radius_of(round: &Shape) -> Scalar {

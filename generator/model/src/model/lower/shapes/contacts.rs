@@ -15,6 +15,7 @@ use super::closed_forms::touches;
 use super::ellipsoids;
 use super::features::Touch;
 use super::polytopes;
+use super::round_on_surface;
 use super::solids::corners_of_a_cube;
 use super::sphere_on_polytope;
 use super::sphere_on_surface;
@@ -167,6 +168,12 @@ impl Lowering<'_> {
             (Kind::Sphere, false, Kind::Surface | Kind::Curve) => {
                 sphere_on_surface::between([striking, struck], &mut self.out.definitions, at)
             }
+            (Kind::Sphere, false, Kind::Implicit)
+            | (
+                Kind::Disc | Kind::Torus | Kind::Ellipsoid,
+                false,
+                Kind::Surface | Kind::Curve | Kind::Implicit,
+            ) => round_on_surface::between([striking, struck], &mut self.out.definitions, at),
             (_, inside, _) => touches(striking, inside, struck, span),
         };
         Some(([a, b], touches))

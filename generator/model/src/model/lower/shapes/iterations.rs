@@ -50,7 +50,7 @@ pub fn is_found(rest: Scalar, terms: Scalar) -> Scalar {
 }
 
 /// The value, of which derivatives take no notice.
-fn freeze(value: Scalar) -> Scalar {
+pub fn freeze(value: Scalar) -> Scalar {
     Scalar::Call(Function::Frozen, vec![value])
 }
 

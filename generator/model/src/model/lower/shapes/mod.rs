@@ -12,11 +12,13 @@ mod contacts;
 mod ellipsoids;
 mod faces;
 mod features;
-mod heights;
 mod iterations;
 mod mass_of_polytope;
 mod masses;
+mod of_place;
 mod polytopes;
+mod round;
+mod round_on_surface;
 mod segment;
 mod separation;
 mod shared;
@@ -26,6 +28,7 @@ mod sphere_on_polytope;
 mod sphere_on_surface;
 
 pub(super) use bodies::shape_field;
+pub(super) use of_place::PLACES;
 
 use super::super::mechanism::{Anchor, BodyId, FrameId, Kind, PointId, Shape, Vector};
 use super::super::names::Symbol;
@@ -63,6 +66,7 @@ impl Lowering<'_> {
         let carrier = self.carrier(other("of"), record);
         let (sizes, size_spans) = self.sizes(kind, field).unzip();
         let (vertices, height) = (self.vertices(kind, field), self.height(kind, field));
+        let function = self.function(kind, field);
         let axis = self.axis(kind, field, other("axis"), &record.name);
         let density = other("density").map(|field| self.density(field));
         let colour = other("colour").map(|field| self.colour(field));
@@ -90,6 +94,7 @@ impl Lowering<'_> {
             axes: axes?,
             vertices: vertices?,
             height: height?,
+            function: function?,
             density: match density {
                 Some(density) => Some(density?),
                 None => None,
@@ -331,6 +336,7 @@ fn unread(record: &Record) -> Shape {
         axes: None,
         vertices: Vec::new(),
         height: None,
+        function: None,
         density: None,
         colour: None,
         at_span: span,

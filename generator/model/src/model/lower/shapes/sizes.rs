@@ -1,6 +1,6 @@
-//! Lowers what a shape is made of: lengths, vertices, heights and density.
+//! Lowers what a shape is made of: lengths, vertices, functions of the place and density.
 
-use super::super::super::mechanism::{Anchor, Height, Kind, Scalar};
+use super::super::super::mechanism::{Anchor, Height, Kind, OfPlace, Scalar};
 use super::super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
@@ -91,25 +91,63 @@ impl Lowering<'_> {
             self.report(error.help("write `surface: h*sin(k*x)*cos(k*y)`"));
             return None;
         }
-        let what = "a height";
-        self.along_surface = if kind == Kind::Surface { 2 } else { 1 };
-        let read = self.scalar_like(&field.value, Dimension::of(1, 0, 0), what);
+        let places = if kind == Kind::Surface { 2 } else { 1 };
+        let height = self.of_place(field, places, Some(Dimension::of(1, 0, 0)), "a height")?;
+        let height = Height::of(height, field.value.span);
+        if height.is_none() {
+            self.without_slope("this height", field.value.span);
+        }
+        height.map(Some)
+    }
+
+    /// The function of an implicit surface; other shapes have none.
+    pub(super) fn function(&mut self, kind: Kind, field: &Field) -> Option<Option<OfPlace<3>>> {
+        if kind != Kind::Implicit {
+            return Some(None);
+        }
+        let value = self.of_place(field, 3, None, "the function of an implicit surface")?;
+        let Some(function) = OfPlace::of(value, field.value.span) else {
+            self.without_slope("this function", field.value.span);
+            return None;
+        };
+        if !function.value.has_a_place() {
+            let message = "the function of an implicit surface depends on the place x, y, z";
+            let error = Diagnostic::new(codes::SHAPE, field.value.span, message);
+            self.report(error.help("it vanishes on the surface and is positive outside: `x^2 + y^2 - r^2`"));
+            return None;
+        }
+        Some(Some(function))
+    }
+
+    /// A function of the place along the first axes of a frame, and of parameters.
+    fn of_place(
+        &mut self,
+        field: &Field,
+        places: usize,
+        dimension: Option<Dimension>,
+        what: &str,
+    ) -> Option<Scalar> {
+        self.along_surface = places;
+        let typed = self.expression(&field.value);
         self.along_surface = 0;
-        let (scalar, typed) = read?;
+        let scalar = self.need_scalar(&typed, what)?;
+        if let Some(dimension) = dimension {
+            self.demand(&typed, dimension, what);
+        }
         self.need_free_of_speeds(&typed, what);
         if typed.traits.moves || typed.traits.time || typed.traits.input.is_some() {
-            let message = "the height of a surface depends on its place and on parameters only";
+            let message = format!("{what} depends on its place and on parameters only");
             let error = Diagnostic::new(codes::SHAPE, typed.span, message);
             self.report(error.help("a ground that moves is a surface of a frame that moves: `of: Table`"));
             return None;
         }
-        let height = Height::of(scalar, field.value.span);
-        if height.is_none() {
-            let message = "this height has no slope everywhere, so that the surface has no normal";
-            let error = Diagnostic::new(codes::SHAPE, field.value.span, message);
-            self.report(error.help("abs, sign, min, max and powers that depend on the place make edges"));
-        }
-        height.map(Some)
+        Some(scalar)
+    }
+
+    fn without_slope(&mut self, what: &str, span: Span) {
+        let message = format!("{what} has no slope everywhere, so that the surface has no normal");
+        let error = Diagnostic::new(codes::SHAPE, span, message);
+        self.report(error.help("abs, sign, min, max and powers that depend on the place make edges"));
     }
 
     /// The density of a shape.

@@ -5,7 +5,6 @@
 
 use super::algebra::*;
 use super::features::{Touch, axes_of};
-use super::heights::slope;
 use super::iterations::{Solution, either, is_found, solved};
 use super::separation::least;
 use super::shared::Shared;
@@ -84,12 +83,8 @@ struct Foot<const N: usize> {
 impl<'s, const N: usize> Ground<'s, N> {
     fn of(sphere: &Shape, surface: &'s Shape, at: Span, shared: &mut Shared<'_>) -> Option<Self> {
         let height = surface.height.as_ref()?;
-        let curvatures: [[Option<Scalar>; N]; N] =
-            symmetric(|i, j| slope(&height.slopes[i], Height::PLACES[j], surface.span));
-        if curvatures.iter().flatten().any(Option::is_none) {
-            return None;
-        }
-        let curvatures = curvatures.map(|row| row.map(|entry| entry.unwrap_or_else(|| integer(0))));
+        let all = height.curvatures(surface.span)?;
+        let curvatures = std::array::from_fn(|i| std::array::from_fn(|j| all[i][j].clone()));
         let axes = axes_of(surface);
         let d = sphere.at.from(&surface.at);
         let across: [Vector; N] = std::array::from_fn(|i| axes[i].clone());

@@ -1,53 +1,93 @@
-//! Heights z = h(x, y) of surfaces: derivatives, and values at places.
+//! Functions of the place by which surfaces are stated, heights z = h(x, y) and f(x, y, z) = 0: derivatives, and values
+//! at places.
 
 use super::algebra::*;
 use crate::arithmetic::Function;
-use crate::model::mechanism::{DefinitionId, Height, Scalar};
+use crate::model::mechanism::{DefinitionId, Kind, OfPlace, Scalar, Shape};
 use crate::number::Number;
 use crate::span::Span;
 
-impl Height {
-    /// Stands for x and y in a height: no definition has such an index.
-    pub(in crate::model::lower) const PLACES: [DefinitionId; 2] =
-        [DefinitionId(usize::MAX), DefinitionId(usize::MAX - 1)];
+/// What stands for x, y and z in a function of the place: no definition has such an index.
+pub(in crate::model::lower) const PLACES: [DefinitionId; 3] =
+    [DefinitionId(usize::MAX), DefinitionId(usize::MAX - 1), DefinitionId(usize::MAX - 2)];
 
-    /// A height with its slopes; `None` if it depends on its place in a way that has none here.
-    pub(super) fn of(value: Scalar, at: Span) -> Option<Height> {
-        let [x, y] = Height::PLACES.map(|place| slope(&value, place, at));
-        Some(Height { slopes: [x?, y?], value })
+impl<const N: usize> OfPlace<N> {
+    /// A function with its slopes; `None` if it depends on its place in a way that has none here.
+    pub(super) fn of(value: Scalar, at: Span) -> Option<Self> {
+        let slopes = all_of(std::array::from_fn(|i| slope(&value, PLACES[i], at)))?;
+        Some(OfPlace { slopes, value })
     }
-}
 
-impl Height {
-    /// The height at a place, m: an expression of parameters. `None` if the place is no number.
-    pub fn value_at(&self, place: [f64; 2]) -> Option<Scalar> {
+    /// The second derivatives; `None` where there is no rule.
+    pub(super) fn curvatures(&self, at: Span) -> Option<[[Scalar; N]; N]> {
+        all_of(symmetric(|i, j| slope(&self.slopes[i], PLACES[j], at)).map(all_of))
+    }
+
+    /// The value at a place: an expression of parameters. `None` if the place is no number.
+    pub fn value_at(&self, place: [f64; N]) -> Option<Scalar> {
         Some(self.value.at(&numbers(place)?))
     }
 
     /// The slopes at a place: expressions of parameters. `None` if the place is no number.
-    pub fn slopes_at(&self, place: [f64; 2]) -> Option<[Scalar; 2]> {
+    pub fn slopes_at(&self, place: [f64; N]) -> Option<[Scalar; N]> {
         let place = numbers(place)?;
         Some(self.slopes.each_ref().map(|slope| slope.at(&place)))
     }
 }
 
+impl OfPlace<3> {
+    /// z - h(x, y) of a surface, y - h(x) of a curve, or the function of an implicit surface.
+    pub(super) fn above(surface: &Shape) -> Option<Self> {
+        let up = match surface.kind {
+            Kind::Implicit => return surface.function.clone(),
+            Kind::Curve => 1,
+            _ => 2,
+        };
+        let height = surface.height.as_ref()?;
+        let value = less(Scalar::Definition(PLACES[up]), height.value.clone());
+        let slopes = std::array::from_fn(|i| match i {
+            i if i < up => opposite_of(height.slopes[i].clone()),
+            i => integer(i64::from(i == up)),
+        });
+        Some(OfPlace { value, slopes })
+    }
+}
+
 /// A place as numbers.
-fn numbers(place: [f64; 2]) -> Option<[Scalar; 2]> {
+fn numbers<const N: usize>(place: [f64; N]) -> Option<[Scalar; N]> {
     let number = |x: f64| num_rational::BigRational::from_float(x).map(|x| Scalar::Number(Number(x)));
-    let [x, y] = place.map(number);
-    Some([x?, y?])
+    all_of(place.map(number))
+}
+
+/// All of what there is, or nothing.
+fn all_of<T, const N: usize>(parts: [Option<T>; N]) -> Option<[T; N]> {
+    let parts: Option<Vec<T>> = parts.into_iter().collect();
+    parts?.try_into().ok()
 }
 
 impl Scalar {
-    /// The value of a height, or of its slope, at a place.
-    pub(super) fn at(&self, places: &[Scalar; 2]) -> Scalar {
+    /// Whether it depends on the place.
+    pub(super) fn has_a_place(&self) -> bool {
+        match self {
+            Scalar::Definition(id) => PLACES.contains(id),
+            Scalar::Neg(a) => a.has_a_place(),
+            Scalar::Add(list) | Scalar::Mul(list) | Scalar::Call(_, list) => {
+                list.iter().any(Scalar::has_a_place)
+            }
+            Scalar::Div(a, b, _) | Scalar::Pow(a, b) => a.has_a_place() || b.has_a_place(),
+            _ => false,
+        }
+    }
+
+    /// The value of a function of the place, or of its slope, at a place.
+    pub(super) fn at(&self, places: &[Scalar]) -> Scalar {
         let all = |list: &[Scalar]| list.iter().map(|part| part.at(places)).collect();
         let one = |part: &Scalar| Box::new(part.at(places));
         match self {
-            Scalar::Definition(id) => match Height::PLACES.iter().position(|place| place == id) {
-                Some(which) => places[which].clone(),
-                None => self.clone(),
-            },
+            Scalar::Definition(id) => {
+                let which = PLACES.iter().position(|place| place == id);
+                which.and_then(|which| places.get(which)).unwrap_or(self).clone()
+            }
             Scalar::Neg(a) => Scalar::Neg(one(a)),
             Scalar::Add(list) => Scalar::Add(all(list)),
             Scalar::Mul(list) => Scalar::Mul(all(list)),
@@ -59,7 +99,7 @@ impl Scalar {
     }
 }
 
-/// The derivative by x or y; `None` where there is no rule.
+/// The derivative by x, y or z; `None` where there is no rule.
 pub fn slope(value: &Scalar, by: DefinitionId, at: Span) -> Option<Scalar> {
     let of = |part: &Scalar| slope(part, by, at);
     Some(match value {
