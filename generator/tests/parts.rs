@@ -217,6 +217,7 @@ fn shapes_and_their_contacts_belong_to_parts() {
                 Ends { of: Ball, capsule: [r, y*r], axis: N.x, colour: teal },
                 Ground { at: floor, half_space: N.z },
                 Waves { at: floor - h*N.z, surface: h*sin(k*x)*cos(k*y) },
+                Post { at: floor, implicit: x^2 + y*z - h^2 },
                 Cube { of: Ball, box: [r, r, r] },
             }
             contacts { sole { Ends on Ground, surface: { mu: 0.4 } }, bumps { Cube on Waves } }
@@ -238,6 +239,7 @@ fn shapes_and_their_contacts_belong_to_parts() {
             "A_Ends { of: A_Ball, capsule: [A_r, Y*A_r], axis: N.x, colour: teal },
              A_Ground { at: AT, half_space: N.z },
              A_Waves { at: AT - A_h*N.z, surface: A_h*sin(A_k*x)*cos(A_k*y) },
+             A_Post { at: AT, implicit: x^2 + y*z - A_h^2 },
              A_Cube { of: A_Ball, box: [A_r, A_r, A_r] },",
             "d(A_x)/dt = A_ux;",
             "A_sole { A_Ends on A_Ground, surface: { mu: 0.4 } }, A_bumps { A_Cube on A_Waves },",

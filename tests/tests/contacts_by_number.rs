@@ -1,5 +1,5 @@
 //! Contacts that a module reaches by number alone: the features of two boxes, and of a capsule and a box (docs/theory.md,
-//! 16.10 and 16.11); and contacts whose routine solves an equation (16.13).
+//! 16.10 and 16.11); and contacts whose routine solves an equation (16.13 and 16.15).
 
 use hodograph::nalgebra::Vector3;
 use hodograph::{ClosedContacts, ComponentKind, Contacts, Distance, Law, State, StateError};
@@ -8,6 +8,7 @@ use hodograph_random::Random;
 
 hodograph::mechanism!("../models/shapes/ball_on_waves.mech");
 hodograph::mechanism!("../models/shapes/dominoes.mech");
+hodograph::mechanism!("../models/shapes/tyre_on_hills.mech");
 hodograph::mechanism!("../simulation/models/crate_on_table.mech");
 hodograph::mechanism!("../simulation/models/egg_on_egg.mech");
 hodograph::mechanism!("../simulation/models/log_on_table.mech");
@@ -17,6 +18,7 @@ use crate_on_table::CrateOnTable;
 use dominoes::Dominoes;
 use egg_on_egg::EggOnEgg;
 use log_on_table::LogOnTable;
+use tyre_on_hills::TyreOnHills;
 
 /// The routines of the module are those of the program.
 #[test]
@@ -25,15 +27,19 @@ fn modules_compute_what_the_program_says() {
     agree(&LogOnTable::<f64>::default(), "simulation/models/log_on_table", 22);
     agree(&EggOnEgg::<f64>::default(), "simulation/models/egg_on_egg", 1);
     agree(&BallOnWaves::<f64>::default(), "models/shapes/ball_on_waves", 1);
+    agree(&TyreOnHills::<f64>::default(), "models/shapes/tyre_on_hills", 1);
 }
 
 /// What a module says of an iteration in singles is what it says in doubles, to their rounding.
 #[test]
 fn equations_are_solved_in_singles_too() {
-    let doubles: [&dyn Contacts<f64>; 2] = [&EggOnEgg::<f64>::default(), &BallOnWaves::<f64>::default()];
-    let singles: [&dyn Contacts<f32>; 2] = [&EggOnEgg::<f32>::default(), &BallOnWaves::<f32>::default()];
+    let (egg, ball, tyre) = (EggOnEgg::<f64>::default(), BallOnWaves::default(), TyreOnHills::default());
+    let doubles: [&dyn Contacts<f64>; 3] = [&egg, &ball, &tyre];
+    let (egg, ball, tyre) = (EggOnEgg::<f32>::default(), BallOnWaves::default(), TyreOnHills::default());
+    let singles: [&dyn Contacts<f32>; 3] = [&egg, &ball, &tyre];
     let mut random = Random::new(0x51ab_0042_77de_0013);
     for (exact, rough) in doubles.into_iter().zip(singles) {
+        let mut refused = 0;
         for _ in 0..1000 {
             let mut q = [0.0_f32; 7];
             let turned = random.rotation();
@@ -42,13 +48,20 @@ fn equations_are_solved_in_singles_too() {
             (0..4).for_each(|i| q[3 + i] = turned[i] as f32);
             let (wide, still) = (q.map(f64::from), [0.0; 6]);
             let state = State { time: 0.0, coordinates: &wide, speeds: &still, inputs: &[] };
-            let known = exact.contact_state(0, &state).unwrap();
+            let Ok(known) = exact.contact_state(0, &state) else {
+                // the axle is almost upright: the rim lies flat
+                let upright = 2.0 * (turned[2] * turned[3] + turned[0] * turned[1]);
+                assert!(upright.abs() > 0.98, "{q:?}");
+                refused += 1;
+                continue;
+            };
             let state = State { time: 0.0, coordinates: &q, speeds: &[0.0; 6], inputs: &[] };
             let found = rough.contact_state(0, &state).unwrap();
             let (gap, known_gap) = (f64::from(found.gap.unwrap()), known.gap.unwrap());
             assert!((gap - known_gap).abs() < 1e-5, "{gap} {known_gap} at {q:?}");
             assert!((found.normal.map(f64::from) - known.normal).norm() < 1e-4, "{q:?}");
         }
+        assert!(refused < 5, "{refused}");
     }
 }
 

@@ -67,6 +67,19 @@ pub const SHAPE: [&str; 6] = ["of", "at", "axis", "axes", "density", "colour"];
 pub const PARTICLE: [&str; 2] = ["point", "mass"];
 /// The fields of a contact.
 pub const CONTACT: [&str; 5] = ["point", "against", "normal", "gap", "surface"];
+/// The coordinates of a place along the axes of a shape.
+pub const PLACES: [&str; 3] = ["x", "y", "z"];
+
+/// Those of [`PLACES`] that stand for a place in the expression after this word: of a shape that is stated by one.
+pub fn places(word: &str) -> &'static [&'static str] {
+    match word {
+        "curve" => &PLACES[..1],
+        "surface" => &PLACES[..2],
+        "implicit" => &PLACES,
+        _ => &[],
+    }
+}
+
 /// The fields of the surface of a contact.
 pub const SURFACE: [&str; 9] =
     ["mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution", "rolling", "spinning"];

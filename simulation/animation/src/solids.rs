@@ -128,7 +128,7 @@ impl Solids {
                 hexadecimal,
             );
             if let Some(outline) = local.outline(shape, frame.is_none()) {
-                let endless = shape.kind.is_flat() || shape.kind.is_stated_by_place();
+                let endless = shape.kind.is_flat() || shape.kind.places() > 0;
                 out.push(outline.shape(&shape.name, colour, *frame, endless));
             }
         }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use crate::span::Span;
 use crate::syntax::tree::{Declaration, Equation, Expr, ExprKind, Field, Name, Record, Tree};
+use crate::words;
 
 /// What is declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,8 +128,8 @@ pub fn roles(tree: &Tree) -> HashMap<u32, Role> {
 #[derive(Default)]
 struct Roles {
     found: HashMap<u32, Role>,
-    /// whether `x` and `y` are words here
-    own: bool,
+    /// coordinates of a place: they are words here
+    own: &'static [&'static str],
 }
 
 /// Words that a field takes in place of a name.
@@ -169,12 +170,14 @@ impl Roles {
         }
     }
 
-    /// A field of a shape. In the height of a surface or a curve `x` and `y` are coordinates of its own.
+    /// A field of a shape. In the expression of a surface, a curve or an implicit surface `x`, `y` and `z` are coordinates
+    /// of its own.
     fn dimension(&mut self, field: &Field) {
-        if !["surface", "curve"].contains(&field.name.text.as_str()) {
+        let own = words::places(&field.name.text);
+        if own.is_empty() {
             return self.fields(std::slice::from_ref(field));
         }
-        let mut inner = Roles { own: true, ..Roles::default() };
+        let mut inner = Roles { own, ..Roles::default() };
         inner.expression(&field.value);
         self.found.extend(inner.found);
     }
@@ -187,7 +190,7 @@ impl Roles {
     fn expression(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Error | ExprKind::Number(_) => {}
-            ExprKind::Name(name) if self.own && (name == "x" || name == "y") => {}
+            ExprKind::Name(name) if self.own.contains(&name.as_str()) => {}
             ExprKind::Name(_) => self.refers(expr.span),
             ExprKind::Sum(terms) | ExprKind::Product(terms) => {
                 terms.iter().for_each(|(_, term)| self.expression(term));

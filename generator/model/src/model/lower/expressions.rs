@@ -15,6 +15,7 @@ use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
+use crate::words;
 
 /// Largest number of digits of a number.
 const MAX_DIGITS: usize = 60;
@@ -101,8 +102,7 @@ impl Lowering<'_> {
 
     fn name(&mut self, name: &Name) -> Typed {
         let span = name.span;
-        if let Some(place) =
-            ["x", "y", "z"].iter().take(self.along_surface).position(|axis| *axis == name.text)
+        if let Some(place) = words::PLACES.iter().take(self.along_surface).position(|axis| *axis == name.text)
         {
             let value = Scalar::Definition(PLACES[place]);
             return Typed::scalar(value, Some(Dimension::of(1, 0, 0)), Traits::default(), span);

@@ -2,6 +2,7 @@
 
 use super::expression::{BodyId, FrameId, PointId, Scalar, Vector};
 use crate::span::Span;
+use crate::words;
 
 /// What a shape is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -111,9 +112,9 @@ impl Kind {
         matches!(self, Kind::Plane | Kind::HalfSpace)
     }
 
-    /// Whether it is stated by an expression of the place, and may have no end.
-    pub fn is_stated_by_place(self) -> bool {
-        matches!(self, Kind::Surface | Kind::Curve | Kind::Implicit)
+    /// How many coordinates of a place stand in the expression that states it: none if no such expression does.
+    pub fn places(self) -> usize {
+        words::places(self.word()).len()
     }
 
     /// With its article, for messages.

@@ -91,8 +91,7 @@ impl Lowering<'_> {
             self.report(error.help("write `surface: h*sin(k*x)*cos(k*y)`"));
             return None;
         }
-        let places = if kind == Kind::Surface { 2 } else { 1 };
-        let height = self.of_place(field, places, Some(Dimension::of(1, 0, 0)), "a height")?;
+        let height = self.of_place(field, kind.places(), Some(Dimension::of(1, 0, 0)), "a height")?;
         let height = Height::of(height, field.value.span);
         if height.is_none() {
             self.without_slope("this height", field.value.span);
@@ -105,7 +104,7 @@ impl Lowering<'_> {
         if kind != Kind::Implicit {
             return Some(None);
         }
-        let value = self.of_place(field, 3, None, "the function of an implicit surface")?;
+        let value = self.of_place(field, kind.places(), None, "the function of an implicit surface")?;
         let Some(function) = OfPlace::of(value, field.value.span) else {
             self.without_slope("this function", field.value.span);
             return None;
