@@ -5,6 +5,7 @@
 
 mod cascades;
 mod clearances;
+mod degenerate_poses;
 mod diagnostics;
 mod errors_page;
 mod expansion;
