@@ -4,6 +4,7 @@
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::mem::discriminant;
 
+use super::chains::{self, Term};
 use crate::interpret::constants::Constants;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
@@ -44,6 +45,8 @@ pub enum Code {
     NegMulAddSSU,
     NegMulAddSUU,
     NegMulAddUUS,
+    /// the terms from `a` on, `b` of them, added to `c`
+    Chain,
     Call(Function),
     CallSS(Function),
     CallSU(Function),
@@ -56,6 +59,23 @@ pub enum Code {
     NotSmallSS,
     NotSmallSU,
     NotSmallUS,
+}
+
+impl Code {
+    pub(super) fn is_mul_add(self) -> bool {
+        use Code::*;
+        matches!(self, MulAddSSS | MulAddSUS | MulAddSSU | MulAddSUU | MulAddUUS)
+    }
+
+    pub(super) fn is_mul_sub(self) -> bool {
+        use Code::*;
+        matches!(self, MulSubSSS | MulSubSUS | MulSubSSU | MulSubSUU | MulSubUUS)
+    }
+
+    pub(super) fn is_neg_mul_add(self) -> bool {
+        use Code::*;
+        matches!(self, NegMulAddSSS | NegMulAddSUS | NegMulAddSSU | NegMulAddSUU | NegMulAddUUS)
+    }
 }
 
 /// Steps with the same operation that follow each other.
@@ -78,6 +98,10 @@ pub struct Step {
 #[derive(Clone, Debug)]
 pub struct Columns {
     pub(super) runs: Vec<Run>,
+    /// the terms of all chains: their factors are in these slots
+    pub(super) terms: Vec<Term<Factor>>,
+    /// slots that hold the same number for all states
+    pub(super) same: Vec<(u32, Same)>,
     /// number of slots that the steps need
     pub(super) slots: usize,
     /// values that are the same for all states: the value of the program, and its number
@@ -119,26 +143,46 @@ impl Columns {
     }
 }
 
+/// A factor of a term.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factor {
+    pub slot: u32,
+    /// all states have the same number: one group of them is read
+    pub is_same: bool,
+}
+
+/// A number that is the same for all states.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Same {
+    Uniform(u32),
+    Number(f64),
+}
+
 /// A value that differs between states: a value of the program, or the cosine of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Varying {
+pub(super) struct Varying {
     value: u32,
     cosine: bool,
 }
 
 /// An operand before slots are assigned.
 #[derive(Clone, Copy, Debug)]
-enum Place {
+pub(super) enum Place {
     Varying(Varying),
     Uniform(u32),
+    /// in chains
+    Number(f64),
 }
 
 /// A step before slots are assigned: the value that it defines, and its operands.
-struct Draft {
-    code: Code,
-    defines: [Option<Varying>; 2],
-    number: u32,
-    operands: [Option<Place>; 3],
+pub(super) struct Draft {
+    pub code: Code,
+    pub defines: [Option<Varying>; 2],
+    pub number: u32,
+    /// of a chain the first alone: what its terms are added to
+    pub operands: [Option<Place>; 3],
+    /// of a chain
+    pub terms: Vec<Term<Place>>,
 }
 
 /// Compiles those of the quantities that the program has.
@@ -152,6 +196,7 @@ fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) ->
         match compiler.place(value) {
             Place::Varying(varying) => results.entry(varying).or_default().push(len as u32),
             Place::Uniform(uniform) => uniform_results.push((len, uniform)),
+            Place::Number(_) => {}
         }
         len += 1;
     }
@@ -182,28 +227,40 @@ fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) ->
             let (value, scale) = checks[check];
             let known = |place: Place| match place {
                 Place::Varying(varying) => defined.contains_key(&varying),
-                Place::Uniform(_) => true,
+                Place::Uniform(_) | Place::Number(_) => true,
             };
             let ready = known(value) && scale.is_none_or(known);
             if ready {
                 let code = match (value, scale) {
                     (Place::Varying(_), None) => Code::NotZeroS,
                     (Place::Varying(_), Some(Place::Varying(_))) => Code::NotSmallSS,
-                    (Place::Varying(_), Some(Place::Uniform(_))) => Code::NotSmallSU,
-                    (Place::Uniform(_), _) => Code::NotSmallUS,
+                    (Place::Varying(_), Some(_)) => Code::NotSmallSU,
+                    (_, _) => Code::NotSmallUS,
                 };
                 drafts.push(Draft::of(code, check as u32, [Some(value), scale, None]));
             }
             !ready
         });
     }
-    let (runs, slots) = with_slots(&grouped(drafts));
-    Columns { runs, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
+    let Slotted { runs, terms, same, slots } = with_slots(&grouped(chains::joined(drafts)));
+    Columns { runs, terms, same, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
 }
 
 impl Draft {
     fn of(code: Code, number: u32, operands: [Option<Place>; 3]) -> Self {
-        Draft { code, defines: [None; 2], number, operands }
+        Draft { code, defines: [None; 2], number, operands, terms: Vec::new() }
+    }
+
+    fn places(&self) -> impl Iterator<Item = Place> {
+        self.operands.iter().flatten().copied().chain(self.terms.iter().flat_map(|term| term.factors))
+    }
+
+    /// The values that it reads.
+    pub fn reads(&self) -> impl Iterator<Item = Varying> {
+        self.places().filter_map(|place| match place {
+            Place::Varying(varying) => Some(varying),
+            Place::Uniform(_) | Place::Number(_) => None,
+        })
     }
 }
 
@@ -295,7 +352,7 @@ impl Compiler<'_> {
                 pick([Code::CallSS(function), Code::CallSU(function), Code::CallUS(function)], uniform)
             }
         };
-        Some(Draft { code, defines, number: 0, operands })
+        Some(Draft { code, defines, number: 0, operands, terms: Vec::new() })
     }
 }
 
@@ -322,11 +379,7 @@ fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
     loop {
         let last = ordered.last().map(|draft| discriminant(&draft.code));
         let alike = waiting.iter().take(WINDOW).position(|draft| {
-            let known = |place: &Place| match place {
-                Place::Varying(varying) => defined.contains(varying),
-                Place::Uniform(_) => true,
-            };
-            Some(discriminant(&draft.code)) == last && draft.operands.iter().flatten().all(known)
+            Some(discriminant(&draft.code)) == last && draft.reads().all(|varying| defined.contains(&varying))
         });
         // The operands of the first waiting step are defined by earlier steps.
         let Some(draft) = waiting.remove(alike.unwrap_or(0)) else { return ordered };
@@ -335,58 +388,100 @@ fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
     }
 }
 
+/// Steps on slots.
+struct Slotted {
+    runs: Vec<Run>,
+    terms: Vec<Term<Factor>>,
+    same: Vec<(u32, Same)>,
+    slots: usize,
+}
+
+/// The slots that are held.
+#[derive(Default)]
+struct Slots {
+    held: HashMap<Varying, u32>,
+    free: Vec<u32>,
+    count: u32,
+    /// of numbers that are the same for all states, by their bits or by their index
+    same: HashMap<(bool, u64), u32>,
+}
+
+impl Slots {
+    fn new_slot(&mut self) -> u32 {
+        self.count += 1;
+        self.count - 1
+    }
+
+    fn take(&mut self, varying: Varying) -> u32 {
+        let slot = self.free.pop().unwrap_or_else(|| self.new_slot());
+        self.held.insert(varying, slot);
+        slot
+    }
+
+    fn release(&mut self, varying: Varying) {
+        self.free.extend(self.held.remove(&varying));
+    }
+
+    /// The slot of an operand of a chain.
+    fn of(&mut self, place: Place, same: &mut Vec<(u32, Same)>) -> u32 {
+        let (key, number) = match place {
+            Place::Varying(varying) => return self.held.get(&varying).copied().unwrap_or(0),
+            Place::Uniform(uniform) => ((true, u64::from(uniform)), Same::Uniform(uniform)),
+            Place::Number(number) => ((false, number.to_bits()), Same::Number(number)),
+        };
+        if let Some(slot) = self.same.get(&key) {
+            return *slot;
+        }
+        let slot = self.new_slot();
+        self.same.insert(key, slot);
+        same.push((slot, number));
+        slot
+    }
+}
+
 /// Assigns slots; the slot that became free last is reused first.
-fn with_slots(drafts: &[Draft]) -> (Vec<Run>, usize) {
+fn with_slots(drafts: &[Draft]) -> Slotted {
     let mut last: HashMap<Varying, usize> = HashMap::new();
     for (index, draft) in drafts.iter().enumerate() {
-        let used = draft.operands.iter().flatten().filter_map(|place| match place {
-            Place::Varying(varying) => Some(*varying),
-            Place::Uniform(_) => None,
-        });
-        for varying in used.chain(draft.defines.into_iter().flatten()) {
+        for varying in draft.reads().chain(draft.defines.into_iter().flatten()) {
             last.insert(varying, index);
         }
     }
-    let (mut held, mut free, mut count) = (HashMap::<Varying, u32>::new(), Vec::new(), 0_u32);
-    let mut runs: Vec<Run> = Vec::new();
+    let mut slots = Slots::default();
+    let (mut runs, mut terms, mut same): (Vec<Run>, Vec<_>, Vec<_>) = (Vec::new(), Vec::new(), Vec::new());
     for (index, draft) in drafts.iter().enumerate() {
-        let operands = draft.operands.map(|place| match place {
-            Some(Place::Varying(varying)) => held.get(&varying).copied().unwrap_or(0),
-            Some(Place::Uniform(uniform)) => uniform,
-            None => 0,
-        });
-        for place in draft.operands.iter().flatten() {
-            if let Place::Varying(varying) = place
-                && last.get(varying) == Some(&index)
-                && let Some(slot) = held.remove(varying)
-            {
-                free.push(slot);
-            }
-        }
-        let defined = draft.defines.map(|varying| {
-            varying.map(|varying| {
-                let slot = free.pop().unwrap_or_else(|| {
-                    count += 1;
-                    count - 1
+        let [a, b, c] = if draft.code == Code::Chain {
+            let first = terms.len() as u32;
+            for term in &draft.terms {
+                let factors = term.factors.map(|place| Factor {
+                    slot: slots.of(place, &mut same),
+                    is_same: !matches!(place, Place::Varying(_)),
                 });
-                held.insert(varying, slot);
-                slot
-            })
-        });
-        for varying in draft.defines.into_iter().flatten() {
-            // the value is never used
-            if last.get(&varying) == Some(&index)
-                && let Some(slot) = held.remove(&varying)
-            {
-                free.push(slot);
+                terms.push(Term { factors, minus: term.minus, turned: term.turned });
             }
+            let sum = draft.operands[0].map_or(0, |place| slots.of(place, &mut same));
+            [first, draft.terms.len() as u32, sum]
+        } else {
+            draft.operands.map(|place| match place {
+                Some(Place::Varying(varying)) => slots.held.get(&varying).copied().unwrap_or(0),
+                Some(Place::Uniform(uniform)) => uniform,
+                Some(Place::Number(_)) | None => 0,
+            })
+        };
+        for varying in draft.reads().filter(|varying| last.get(varying) == Some(&index)) {
+            slots.release(varying);
         }
-        let [a, b, c] = operands;
+        let defined = draft.defines.map(|varying| varying.map(|varying| slots.take(varying)));
+        // values that are never used
+        for varying in draft.defines.into_iter().flatten().filter(|varying| last.get(varying) == Some(&index))
+        {
+            slots.release(varying);
+        }
         let step = Step { to: defined[0].unwrap_or(draft.number), a, b: defined[1].unwrap_or(b), c };
         match runs.last_mut().filter(|run| run.code == draft.code) {
             Some(run) => run.steps.push(step),
             None => runs.push(Run { code: draft.code, steps: vec![step] }),
         }
     }
-    (runs, count as usize)
+    Slotted { runs, terms, same, slots: slots.count as usize }
 }

@@ -1,6 +1,6 @@
 //! Executes the steps on a block of states.
 
-use super::compile::{Code, Columns, Run, Step};
+use super::compile::{Code, Columns, Run, Same, Step};
 use super::lanes::{InSlot, LANES, Numbers, Operand, Slot, Uniform, WIDTH};
 use super::table::Table;
 use crate::interpret::constants::holds;
@@ -34,14 +34,15 @@ impl Scratch {
         for &(place, uniform) in &columns.uniform_results {
             results[place] = Slot::of(uniforms[uniform as usize]);
         }
-        Scratch {
-            slots: vec![ZERO; columns.slots],
-            uniforms,
-            results,
-            failures: [None; LANES],
-            failed: [NONE; LANES],
-            finite: ZERO,
+        let mut slots = vec![ZERO; columns.slots];
+        for &(slot, number) in &columns.same {
+            let number = match number {
+                Same::Uniform(uniform) => uniforms[uniform as usize],
+                Same::Number(number) => number,
+            };
+            slots[slot as usize] = Slot::of(number);
         }
+        Scratch { slots, uniforms, results, failures: [None; LANES], failed: [NONE; LANES], finite: ZERO }
     }
 }
 
@@ -87,6 +88,10 @@ impl Task<'_> {
                     for step in steps {
                         table.gather(input, first, count, &mut scratch.slots[step.to as usize]);
                     }
+                }
+                Code::Chain => {
+                    Numbers { slots: &mut scratch.slots, uniforms: &scratch.uniforms }
+                        .chain(steps, &columns.terms);
                 }
                 Code::Result => steps.iter().for_each(|step| scratch.keep(step)),
                 Code::NotZeroS => scratch.check::<InSlot, InSlot>(steps, false),
@@ -192,6 +197,6 @@ fn compute(code: Code, steps: &[Step], mut on: Numbers<'_>) {
         CallSS(function) => on.two::<S, S>(steps, |a, b| call2(function, a, b)),
         CallSU(function) => on.two::<S, U>(steps, |a, b| call2(function, a, b)),
         CallUS(function) => on.two::<U, S>(steps, |a, b| call2(function, a, b)),
-        Load(_) | Result | NotZeroS | NotSmallSS | NotSmallSU | NotSmallUS => {}
+        Load(_) | Chain | Result | NotZeroS | NotSmallSS | NotSmallSU | NotSmallUS => {}
     }
 }

@@ -60,6 +60,46 @@ fn program() -> Program {
     }
 }
 
+/// A program whose results are sums, differences and products of which nobody reads the parts, in all orders.
+fn program_of_sums() -> Program {
+    let mut operations = vec![
+        O::Input(Input::Parameter(0)),
+        O::Constant(Bits::new(-0.75)),
+        O::Constant(Bits::new(0.0)),
+        O::Input(Input::Coordinate(0)),
+        O::Input(Input::Speed(0)),
+        O::Input(Input::Time),
+    ];
+    let mut random = 1_u64;
+    let mut number = |below: u64| {
+        random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+        (random >> 33) % below
+    };
+    let mut results = Vec::new();
+    for _ in 0..400 {
+        let mut sum = Value(number(6) as u32);
+        for _ in 0..2 + number(6) {
+            let [a, b] = [0; 2].map(|_| Value(number(6) as u32));
+            operations.push(match number(10) {
+                0 => O::Add(sum, a),
+                1 => O::Add(a, sum),
+                2 => O::Sub(sum, a),
+                3 => O::Sub(a, sum),
+                4 => O::Mul(a, b),
+                5 => O::Mul(a, sum),
+                6 => O::MulAdd(a, b, sum),
+                7 => O::MulSub(a, b, sum),
+                8 => O::NegMulAdd(a, b, sum),
+                _ => O::MulAdd(a, sum, b),
+            });
+            sum = Value(operations.len() as u32 - 1);
+        }
+        results.push(sum);
+    }
+    let output = Output { quantity: Quantity::Forcing, rows: results.len(), columns: 1, values: results };
+    Program { outputs: vec![output], operations, guards: Vec::new(), structures: Vec::new() }
+}
+
 /// States with every kind of failure among states that have results.
 fn states(rows: usize) -> [Vec<f64>; 3] {
     let number = |row: usize, step: f64| (row as f64 * step).sin() * 3.0;
@@ -135,6 +175,19 @@ fn every_operation_and_every_error_are_those_of_one_state() {
 }
 
 #[test]
+fn sums_have_the_bits_of_their_steps() {
+    let program = program_of_sums();
+    let constants = Constants::new(&program, &[1.3]);
+    let columns = Columns::new(&program, &constants, &[Quantity::Forcing]);
+    let chains = columns.runs.iter().filter(|run| run.code == compile::Code::Chain);
+    let chains: usize = chains.map(|run| run.steps.len()).sum();
+    assert!(chains > 200 && columns.terms.len() > 700, "{chains} {}", columns.terms.len());
+    for rows in [1, 33, 150] {
+        compared(&program, &constants, &[Quantity::Forcing], rows);
+    }
+}
+
+#[test]
 fn other_parameters() {
     let program = program();
     let constants = Constants::new(&program, &[1.3]);
@@ -175,11 +228,17 @@ fn missing_columns_and_rows_are_nan() {
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn the_same_bits_by_all_instructions_that_the_processor_has() {
+    for program in [program(), program_of_sums()] {
+        the_same_bits(&program);
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn the_same_bits(program: &Program) {
     use super::run::{Scratch, Task};
     use pulp::x86::{V3, V4};
-    let program = program();
-    let constants = Constants::new(&program, &[1.3]);
-    let columns = Columns::new(&program, &constants, &[Quantity::Forcing]);
+    let constants = Constants::new(program, &[1.3]);
+    let columns = Columns::new(program, &constants, &[Quantity::Forcing]);
     let [q, u, t] = states(LANES);
     let column = |numbers| vec![Column::new(numbers)];
     let (coordinates, speeds) = (column(&q), column(&u));

@@ -17,7 +17,7 @@ const IN_PLANE: (i64, i64) = (1, 16);
 enum Part {
     Ball(Scalar),
     /// the matrix A of which x . A^-1 x = 1 is the surface
-    Ellipsoid([Components; 3]),
+    Ellipsoid(Box<[Components; 3]>),
     Circle {
         radius: Scalar,
         axis: Components,
@@ -51,7 +51,7 @@ impl Round {
                     let entry = all(rows.iter().map(|row| product([row[i].clone(), row[j].clone()])));
                     shared.scalar(entry, "matrix of the ellipsoid")
                 });
-                vec![Part::Ellipsoid(matrix)]
+                vec![Part::Ellipsoid(Box::new(matrix))]
             }
             Kind::Disc | Kind::Torus => {
                 let axis = components(&shape.axis.clone().unwrap_or(Vector::Zero));
