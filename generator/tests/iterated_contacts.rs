@@ -365,10 +365,10 @@ fn rim(radius: f64, n: V) -> V {
     [radius * n[0] / away, 0.0, radius * n[2] / away]
 }
 
-/// The number of poses is that of `HODOGRAPH_POSES`, else 100.
+/// The number of poses is that of `HODOGRAPH_POSES`, else 60.
 #[test]
 fn round_shapes_on_surfaces() {
-    let poses = std::env::var("HODOGRAPH_POSES").ok().and_then(|poses| poses.parse().ok()).unwrap_or(100);
+    let poses = std::env::var("HODOGRAPH_POSES").ok().and_then(|poses| poses.parse().ok()).unwrap_or(60);
     for ((surface, function), (round, furthest)) in
         SURFACES.into_iter().flat_map(|surface| ROUND.map(|round| (surface, round)))
     {
