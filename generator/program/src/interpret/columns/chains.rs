@@ -2,17 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::compile::{Code, Draft, Place, Varying};
-
-/// A product that is added to the sum of a chain.
-#[derive(Clone, Copy, Debug)]
-pub struct Term<P> {
-    pub factors: [P; 2],
-    /// the product is subtracted
-    pub minus: bool,
-    /// the sum so far changes its sign
-    pub turned: bool,
-}
+use super::steps::{Code, Draft, Place, Term, Varying};
 
 /// What a step adds to one of its operands: which of them is the sum so far, and the term. A factor of 1 leaves the bits of
 /// the other, and -0 those of what is added to it.

@@ -4,95 +4,12 @@
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::mem::discriminant;
 
-use super::chains::{self, Term};
+use super::chains;
+use super::slots::{Slotted, with_slots};
+use super::steps::{Code, Draft, Factor, Place, Run, Same, Term, Varying};
 use crate::interpret::constants::Constants;
-use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Program, Quantity};
-use hodograph_model::arithmetic::Function;
-
-/// The operation of a step on the operands `a`, `b`, `c`. The letters at the end say for each operand whether
-/// it is in a slot (`S`) or the same for all states (`U`, uniform). Factors and terms may have been
-/// exchanged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Code {
-    Load(Input),
-    Neg,
-    Recip,
-    SineCosine,
-    AddSS,
-    AddSU,
-    SubSS,
-    SubSU,
-    SubUS,
-    MulSS,
-    MulSU,
-    DivSS,
-    DivSU,
-    DivUS,
-    MulAddSSS,
-    MulAddSUS,
-    MulAddSSU,
-    MulAddSUU,
-    MulAddUUS,
-    MulSubSSS,
-    MulSubSUS,
-    MulSubSSU,
-    MulSubSUU,
-    MulSubUUS,
-    NegMulAddSSS,
-    NegMulAddSUS,
-    NegMulAddSSU,
-    NegMulAddSUU,
-    NegMulAddUUS,
-    /// the terms from `a` on, `b` of them, added to `c`
-    Chain,
-    Call(Function),
-    CallSS(Function),
-    CallSU(Function),
-    CallUS(Function),
-    /// the result of number `to` is in slot `a`
-    Result,
-    /// `a` must not vanish: check number `to`
-    NotZeroS,
-    /// `a` must not vanish beside `b`: check number `to`
-    NotSmallSS,
-    NotSmallSU,
-    NotSmallUS,
-}
-
-impl Code {
-    pub(super) fn is_mul_add(self) -> bool {
-        use Code::*;
-        matches!(self, MulAddSSS | MulAddSUS | MulAddSSU | MulAddSUU | MulAddUUS)
-    }
-
-    pub(super) fn is_mul_sub(self) -> bool {
-        use Code::*;
-        matches!(self, MulSubSSS | MulSubSUS | MulSubSSU | MulSubSUU | MulSubUUS)
-    }
-
-    pub(super) fn is_neg_mul_add(self) -> bool {
-        use Code::*;
-        matches!(self, NegMulAddSSS | NegMulAddSUS | NegMulAddSSU | NegMulAddSUU | NegMulAddUUS)
-    }
-}
-
-/// Steps with the same operation that follow each other.
-#[derive(Clone, Debug)]
-pub struct Run {
-    pub code: Code,
-    pub steps: Vec<Step>,
-}
-
-/// A step. Its result goes to slot `to`; sine and cosine go to `to` and `b`.
-#[derive(Clone, Copy, Debug)]
-pub struct Step {
-    pub to: u32,
-    pub a: u32,
-    pub b: u32,
-    pub c: u32,
-}
 
 /// Some quantities of a program, prepared for evaluation at many states with the same parameters.
 #[derive(Clone, Debug)]
@@ -141,48 +58,6 @@ impl Columns {
     pub fn slots(&self) -> usize {
         self.slots
     }
-}
-
-/// A factor of a term.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Factor {
-    pub slot: u32,
-    /// all states have the same number: one group of them is read
-    pub is_same: bool,
-}
-
-/// A number that is the same for all states.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Same {
-    Uniform(u32),
-    Number(f64),
-}
-
-/// A value that differs between states: a value of the program, or the cosine of a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Varying {
-    value: u32,
-    cosine: bool,
-}
-
-/// An operand before slots are assigned.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Place {
-    Varying(Varying),
-    Uniform(u32),
-    /// in chains
-    Number(f64),
-}
-
-/// A step before slots are assigned: the value that it defines, and its operands.
-pub(super) struct Draft {
-    pub code: Code,
-    pub defines: [Option<Varying>; 2],
-    pub number: u32,
-    /// of a chain the first alone: what its terms are added to
-    pub operands: [Option<Place>; 3],
-    /// of a chain
-    pub terms: Vec<Term<Place>>,
 }
 
 /// Compiles those of the quantities that the program has.
@@ -244,24 +119,6 @@ fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) ->
     }
     let Slotted { runs, terms, same, slots } = with_slots(&grouped(chains::joined(drafts)));
     Columns { runs, terms, same, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
-}
-
-impl Draft {
-    fn of(code: Code, number: u32, operands: [Option<Place>; 3]) -> Self {
-        Draft { code, defines: [None; 2], number, operands, terms: Vec::new() }
-    }
-
-    fn places(&self) -> impl Iterator<Item = Place> {
-        self.operands.iter().flatten().copied().chain(self.terms.iter().flat_map(|term| term.factors))
-    }
-
-    /// The values that it reads.
-    pub fn reads(&self) -> impl Iterator<Item = Varying> {
-        self.places().filter_map(|place| match place {
-            Place::Varying(varying) => Some(varying),
-            Place::Uniform(_) | Place::Number(_) => None,
-        })
-    }
 }
 
 struct Compiler<'a> {
@@ -386,102 +243,4 @@ fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
         defined.extend(draft.defines.iter().flatten());
         ordered.push(draft);
     }
-}
-
-/// Steps on slots.
-struct Slotted {
-    runs: Vec<Run>,
-    terms: Vec<Term<Factor>>,
-    same: Vec<(u32, Same)>,
-    slots: usize,
-}
-
-/// The slots that are held.
-#[derive(Default)]
-struct Slots {
-    held: HashMap<Varying, u32>,
-    free: Vec<u32>,
-    count: u32,
-    /// of numbers that are the same for all states, by their bits or by their index
-    same: HashMap<(bool, u64), u32>,
-}
-
-impl Slots {
-    fn new_slot(&mut self) -> u32 {
-        self.count += 1;
-        self.count - 1
-    }
-
-    fn take(&mut self, varying: Varying) -> u32 {
-        let slot = self.free.pop().unwrap_or_else(|| self.new_slot());
-        self.held.insert(varying, slot);
-        slot
-    }
-
-    fn release(&mut self, varying: Varying) {
-        self.free.extend(self.held.remove(&varying));
-    }
-
-    /// The slot of an operand of a chain.
-    fn of(&mut self, place: Place, same: &mut Vec<(u32, Same)>) -> u32 {
-        let (key, number) = match place {
-            Place::Varying(varying) => return self.held.get(&varying).copied().unwrap_or(0),
-            Place::Uniform(uniform) => ((true, u64::from(uniform)), Same::Uniform(uniform)),
-            Place::Number(number) => ((false, number.to_bits()), Same::Number(number)),
-        };
-        if let Some(slot) = self.same.get(&key) {
-            return *slot;
-        }
-        let slot = self.new_slot();
-        self.same.insert(key, slot);
-        same.push((slot, number));
-        slot
-    }
-}
-
-/// Assigns slots; the slot that became free last is reused first.
-fn with_slots(drafts: &[Draft]) -> Slotted {
-    let mut last: HashMap<Varying, usize> = HashMap::new();
-    for (index, draft) in drafts.iter().enumerate() {
-        for varying in draft.reads().chain(draft.defines.into_iter().flatten()) {
-            last.insert(varying, index);
-        }
-    }
-    let mut slots = Slots::default();
-    let (mut runs, mut terms, mut same): (Vec<Run>, Vec<_>, Vec<_>) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, draft) in drafts.iter().enumerate() {
-        let [a, b, c] = if draft.code == Code::Chain {
-            let first = terms.len() as u32;
-            for term in &draft.terms {
-                let factors = term.factors.map(|place| Factor {
-                    slot: slots.of(place, &mut same),
-                    is_same: !matches!(place, Place::Varying(_)),
-                });
-                terms.push(Term { factors, minus: term.minus, turned: term.turned });
-            }
-            let sum = draft.operands[0].map_or(0, |place| slots.of(place, &mut same));
-            [first, draft.terms.len() as u32, sum]
-        } else {
-            draft.operands.map(|place| match place {
-                Some(Place::Varying(varying)) => slots.held.get(&varying).copied().unwrap_or(0),
-                Some(Place::Uniform(uniform)) => uniform,
-                Some(Place::Number(_)) | None => 0,
-            })
-        };
-        for varying in draft.reads().filter(|varying| last.get(varying) == Some(&index)) {
-            slots.release(varying);
-        }
-        let defined = draft.defines.map(|varying| varying.map(|varying| slots.take(varying)));
-        // values that are never used
-        for varying in draft.defines.into_iter().flatten().filter(|varying| last.get(varying) == Some(&index))
-        {
-            slots.release(varying);
-        }
-        let step = Step { to: defined[0].unwrap_or(draft.number), a, b: defined[1].unwrap_or(b), c };
-        match runs.last_mut().filter(|run| run.code == draft.code) {
-            Some(run) => run.steps.push(step),
-            None => runs.push(Run { code: draft.code, steps: vec![step] }),
-        }
-    }
-    Slotted { runs, terms, same, slots: slots.count as usize }
 }

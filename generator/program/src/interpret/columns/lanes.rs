@@ -2,8 +2,7 @@
 
 use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced, turned};
 
-use super::chains::Term;
-use super::compile::{Factor, Step};
+use super::steps::{Factor, Step, Term};
 use hodograph_model::arithmetic::{mul_add, sin_cos};
 
 /// Number of states in a block. It is so large that finding out what a step does costs little beside its arithmetic, and so

@@ -17,6 +17,8 @@ mod chains;
 mod compile;
 mod lanes;
 mod run;
+mod slots;
+mod steps;
 mod table;
 
 pub use batch::Block;

@@ -1,7 +1,8 @@
 //! Executes the steps on a block of states.
 
-use super::compile::{Code, Columns, Run, Same, Step};
+use super::compile::Columns;
 use super::lanes::{InSlot, LANES, Numbers, Operand, Slot, Uniform, WIDTH};
+use super::steps::{Code, Run, Same, Step};
 use super::table::Table;
 use crate::interpret::constants::holds;
 use crate::interpret::prepared::Failed;

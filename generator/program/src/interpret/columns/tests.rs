@@ -179,7 +179,7 @@ fn sums_have_the_bits_of_their_steps() {
     let program = program_of_sums();
     let constants = Constants::new(&program, &[1.3]);
     let columns = Columns::new(&program, &constants, &[Quantity::Forcing]);
-    let chains = columns.runs.iter().filter(|run| run.code == compile::Code::Chain);
+    let chains = columns.runs.iter().filter(|run| run.code == steps::Code::Chain);
     let chains: usize = chains.map(|run| run.steps.len()).sum();
     assert!(chains > 200 && columns.terms.len() > 700, "{chains} {}", columns.terms.len());
     for rows in [1, 33, 150] {
