@@ -139,6 +139,31 @@ fn least_valid(m: &Mechanism, state: &State) -> Option<Said> {
     valid.map(|(_, said)| said).min_by(|a, b| a.gap.total_cmp(&b.gap))
 }
 
+/// Differences of the least gaps from known distances.
+#[derive(Default)]
+struct Seen {
+    worst: f64,
+    poses: usize,
+    /// poses without a valid contact
+    none: usize,
+}
+
+impl Seen {
+    fn look(&mut self, m: &Mechanism, state: &State, known: f64) {
+        self.poses += 1;
+        match least_valid(m, state) {
+            Some(found) => self.worst = self.worst.max((found.gap - known).abs()),
+            None => self.none += 1,
+        }
+    }
+
+    fn end(&self) {
+        let Seen { worst, poses, none } = self;
+        println!("{poses} poses: {worst:.1e}, {none} without a valid contact");
+        assert!(*worst < 1e-12 && *none == 0, "{worst:e} {none}");
+    }
+}
+
 /// A state with these coordinates of A, then of B.
 fn at(m: &Mechanism, a: [f64; 6], b: [f64; 6]) -> State {
     let mut state = State::of(m);
@@ -151,7 +176,7 @@ fn at(m: &Mechanism, a: [f64; 6], b: [f64; 6]) -> State {
 #[test]
 fn flush_faces_and_parallel_edges() {
     let m = model("S { of: A, box: [4*k, 6*k, 8*k] }, T { of: B, box: [6*k, 4*k, 5*k] }", "S on T");
-    let (mut worst, mut poses, mut none) = (0.0_f64, 0, 0);
+    let mut seen = Seen::default();
     let overhangs = [[0.0, 0.0], [0.3, 0.1], [0.4, 0.3], [-0.2, 0.3], [0.1, -0.1]];
     for (x, y) in ANGLES.iter().flat_map(|x| [1.0, -1.0].map(|sign| (sign * x, 0.7 * x))) {
         for turned in ANGLES.iter().flat_map(|t| [*t, *t + std::f64::consts::FRAC_PI_2]) {
@@ -161,17 +186,11 @@ fn flush_faces_and_parallel_edges() {
                 let state = at(&m, [p, q, above, x, y, turned], [0.0; 6]);
                 let pose = pose(&m, &state);
                 let crates = [Crate::of(&pose, 0, [0.2, 0.3, 0.4]), Crate::of(&pose, 1, [0.3, 0.2, 0.25])];
-                let known = crates[0].apart(&crates[1]).rounded();
-                poses += 1;
-                match least_valid(&m, &state) {
-                    Some(found) => worst = worst.max((found.gap - known).abs()),
-                    None => none += 1,
-                }
+                seen.look(&m, &state, crates[0].apart(&crates[1]).rounded());
             }
         }
     }
-    println!("{poses} poses: {worst:.1e}, {none} without a valid contact");
-    assert!(worst < 1e-12 && none == 0, "{worst:e} {none}");
+    seen.end();
 }
 
 /// Capsules side by side.
@@ -235,7 +254,7 @@ fn rims_that_almost_lie_flat() {
 fn capsules_along_boxes() {
     let shapes = "S { of: A, capsule: [k, 8*k], axis: E.x }, T { of: B, box: [6*k, 4*k, 5*k] }";
     let m = model(shapes, "S on T");
-    let (mut worst, mut poses, mut none) = (0.0_f64, 0, 0);
+    let mut seen = Seen::default();
     for (tilt, turned) in ANGLES.iter().flat_map(|a| ANGLES.map(|b| (*a, b))) {
         for [x, y] in [[0.0, 0.0], [0.3, 0.1], [0.1, 0.2], [0.5, 0.2], [0.2, 0.35], [0.9, 0.3]] {
             let state = at(&m, [x, y, 0.4 + 0.5 * tilt, 0.0, tilt, turned], [0.0; 6]);
@@ -244,14 +263,8 @@ fn capsules_along_boxes() {
             let segment = (place(pose.at[0]), place(pose.axes[0][0]), d(0.4));
             let ends = [-1.0, 1.0].map(|sign| own.to(plus(segment.0, segment.1, d(sign) * segment.2)));
             let edges = own.edges().into_iter().map(|edge| between_segments(segment, edge));
-            let known = least(edges.chain(ends)).rounded() - 0.1;
-            poses += 1;
-            match least_valid(&m, &state) {
-                Some(found) => worst = worst.max((found.gap - known).abs()),
-                None => none += 1,
-            }
+            seen.look(&m, &state, least(edges.chain(ends)).rounded() - 0.1);
         }
     }
-    println!("{poses} poses: {worst:.1e}, {none} without a valid contact");
-    assert!(worst < 1e-12 && none == 0, "{worst:e} {none}");
+    seen.end();
 }

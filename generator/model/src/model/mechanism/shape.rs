@@ -136,16 +136,16 @@ pub struct Anchor {
     pub by: Vector,
 }
 
-/// A function of a place with N coordinates.
+/// A function of a place with N coordinates, each in m along an axis of a shape.
 #[derive(Clone, Debug)]
 pub struct OfPlace<const N: usize> {
     /// the function, in which x, y and z stand for the place; [`OfPlace::value_at`] gives it at one
     pub value: Scalar,
-    /// its derivatives
+    /// its derivatives by the coordinates: the dimension of the function over m
     pub slopes: [Scalar; N],
 }
 
-/// A height above a plane as a function of the place in it.
+/// A height above a plane, m, as a function of the place in it.
 pub type Height = OfPlace<2>;
 
 /// A shape.
@@ -173,7 +173,8 @@ pub struct Shape {
     pub vertices: Vec<Anchor>,
     /// of a surface or curve
     pub height: Option<Height>,
-    /// of an implicit surface: what vanishes on it, positive outside
+    /// of an implicit surface: what vanishes on it and is positive outside, of any dimension (section 16.15 of
+    /// docs/theory.md)
     pub function: Option<OfPlace<3>>,
     /// kg/m^3
     pub density: Option<Scalar>,

@@ -1,7 +1,8 @@
 //! Quantities of many states at once: columns in, columns out.
 //!
 //! ```text
-//! program -> steps on slots (`compile`), sums joined (`chains`) -> each step on a block of states (`run`) -> results by rows or by columns
+//! program -> steps (`compile`) -> sums joined (`chains`) -> slots (`slots`)
+//!     -> each step on a block of states (`run`) -> results by rows or by columns
 //! ```
 //!
 //! A slot holds one number of every state of a block and is used again as soon as nobody reads it, so that a

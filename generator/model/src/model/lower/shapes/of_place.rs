@@ -23,12 +23,12 @@ impl<const N: usize> OfPlace<N> {
         all_of(symmetric(|i, j| slope(&self.slopes[i], PLACES[j], at)).map(all_of))
     }
 
-    /// The value at a place: an expression of parameters. `None` if the place is no number.
+    /// The value at a place, m: an expression of parameters. `None` if the place is no number.
     pub fn value_at(&self, place: [f64; N]) -> Option<Scalar> {
         Some(self.value.at(&numbers(place)?))
     }
 
-    /// The slopes at a place: expressions of parameters. `None` if the place is no number.
+    /// The slopes at a place, m: expressions of parameters. `None` if the place is no number.
     pub fn slopes_at(&self, place: [f64; N]) -> Option<[Scalar; N]> {
         let place = numbers(place)?;
         Some(self.slopes.each_ref().map(|slope| slope.at(&place)))

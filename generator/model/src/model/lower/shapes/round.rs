@@ -2,6 +2,7 @@
 //! (section 16.15 of docs/theory.md). All components are along the axes of what they are on.
 
 use super::algebra::*;
+use super::features::axes_of;
 use super::separation::others;
 use super::shared::Shared;
 use super::solids::{Components, inner, keep};
@@ -42,7 +43,7 @@ impl Round {
         let length = |i: usize| shape.sizes.get(i).cloned().unwrap_or_else(|| integer(0));
         let parts = match shape.kind {
             Kind::Ellipsoid => {
-                let own = super::features::axes_of(shape);
+                let own = axes_of(shape);
                 let rows: [Components; 3] = std::array::from_fn(|k| {
                     let row = components(&own[k]).map(|part| product([length(k), part]));
                     keep(row, "semi-axis", shared)
