@@ -5,10 +5,14 @@
 //! Time is relative to the start of the step, so that short steps late in a motion lose no digits. Known
 //! rates are not evaluated again, and a step allocates its memory once.
 
+mod transposed;
+
 use std::sync::LazyLock;
 
 use differential_equations::tableau::ButcherTableau;
 use smallvec::SmallVec;
+
+pub use transposed::{TransposedSystem, transpose};
 
 /// Numbers of stages of the method and of its dense output including the rates at the end, and its order.
 const STAGES: usize = 12;

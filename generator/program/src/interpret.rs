@@ -8,6 +8,7 @@ mod constants;
 mod directional;
 mod prepared;
 mod schedule;
+mod transposed;
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -23,6 +24,7 @@ pub use columns::{Column, Columns, Table};
 pub use constants::Constants;
 pub use directional::{Directional, Rates};
 pub use prepared::{Arguments, Failed, Prepared};
+pub use transposed::{Cotangents, Transposed};
 
 /// The values of a quantity.
 #[derive(Clone, Debug, PartialEq)]

@@ -30,15 +30,18 @@ pub(crate) struct At<'a> {
     pub inputs: &'a [f64],
 }
 
-/// The equations of a mechanism and the variables with respect to which they are differentiated.
+/// Variables that change together, with their rates.
+pub(crate) type Direction = Vec<(By, f64)>;
+
+/// The equations of a mechanism and the directions along which they are differentiated.
 pub(crate) struct Field<'m> {
     pub mechanism: &'m InterpretedMechanism,
-    pub by: &'m [By],
-    pub surfaces: &'m [(usize, Surface<f64>)],
+    pub directions_of: Vec<Direction>,
+    pub surfaces: Vec<(usize, Surface<f64>)>,
     /// number of coordinates and of independent speeds
     pub n: usize,
     pub p: usize,
-    /// number of directions: one for each variable of `by`, and the motion itself
+    /// number of directions, of which the last is the motion itself
     pub k: usize,
     by_parameters: Vec<f64>,
     by_inputs: Vec<f64>,
@@ -47,35 +50,52 @@ pub(crate) struct Field<'m> {
 
 /// The key of a routine that evaluates equations.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum RoutineKey {
+pub(crate) enum RoutineKey {
     /// rates, and the terms for the forces at these contacts
     ContactTerms(Vec<usize>),
     /// a gap
     Gap(usize),
 }
 
+impl RoutineKey {
+    /// What the routine computes, in this order.
+    pub fn quantities(&self) -> Vec<Quantity> {
+        let of = |contact: usize, quantity| Quantity::Contact(contact as u32, quantity);
+        match self {
+            RoutineKey::Gap(contact) => vec![of(*contact, ContactQuantity::Gap)],
+            RoutineKey::ContactTerms(contacts) => {
+                let each = |&contact: &usize| OF_CONTACT.map(|quantity| of(contact, quantity));
+                let whole = [Quantity::CoordinateRates, Quantity::Accelerations];
+                whole.into_iter().chain(contacts.iter().flat_map(each)).collect()
+            }
+        }
+    }
+}
+
 impl<'m> Field<'m> {
     pub fn new(
         mechanism: &'m InterpretedMechanism,
-        by: &'m [By],
-        surfaces: &'m [(usize, Surface<f64>)],
+        directions_of: Vec<Direction>,
+        surfaces: Vec<(usize, Surface<f64>)>,
     ) -> Self {
-        let k = by.len() + 1;
+        let k = directions_of.len() + 1;
         let model = mechanism.model();
         let run_time: Vec<usize> =
             (0..model.parameters.len()).filter(|&index| !model.parameters[index].fixed).collect();
         let mut by_parameters = vec![0.0; model.parameters.len() * k];
         let mut by_inputs = vec![0.0; model.inputs.len() * k];
-        for (direction, by) in by.iter().enumerate() {
-            match *by {
-                By::Parameter(index) => by_parameters[run_time[index] * k + direction] = 1.0,
-                By::Input(index) => by_inputs[index * k + direction] = 1.0,
-                _ => {}
+        for (direction, variables) in directions_of.iter().enumerate() {
+            for &(by, rate) in variables {
+                match by {
+                    By::Parameter(index) => by_parameters[run_time[index] * k + direction] += rate,
+                    By::Input(index) => by_inputs[index * k + direction] += rate,
+                    _ => {}
+                }
             }
         }
         Field {
             mechanism,
-            by,
+            directions_of,
             surfaces,
             n: mechanism.count(ComponentKind::Coordinate),
             p: mechanism.count(ComponentKind::Speed),
@@ -91,17 +111,24 @@ impl<'m> Field<'m> {
         self.surfaces.iter().find(|(other, _)| *other == contact).map(|(_, surface)| *surface)
     }
 
+    /// The rate of mu of a contact along a direction.
+    pub fn by_friction(&self, direction: usize, contact: usize) -> f64 {
+        self.rate(direction, |by| by.is_friction_of(contact))
+    }
+
+    /// The rate of e of a contact along a direction.
+    pub fn by_restitution(&self, direction: usize, contact: usize) -> f64 {
+        self.rate(direction, |by| by.is_restitution_of(contact))
+    }
+
+    fn rate(&self, direction: usize, is: impl Fn(By) -> bool) -> f64 {
+        let variables = self.directions_of.get(direction).into_iter().flatten();
+        variables.filter(|(by, _)| is(*by)).map(|(_, rate)| rate).sum()
+    }
+
     fn routine(&self, key: RoutineKey) -> Rc<Directional> {
         let make = || {
-            let of = |contact: usize, quantity| Quantity::Contact(contact as u32, quantity);
-            let quantities: Vec<Quantity> = match &key {
-                RoutineKey::Gap(contact) => vec![of(*contact, ContactQuantity::Gap)],
-                RoutineKey::ContactTerms(contacts) => {
-                    let each = |&contact: &usize| OF_CONTACT.map(|quantity| of(contact, quantity));
-                    let whole = [Quantity::CoordinateRates, Quantity::Accelerations];
-                    whole.into_iter().chain(contacts.iter().flat_map(each)).collect()
-                }
-            };
+            let quantities = key.quantities();
             let parameters = (self.mechanism.all_parameters(), &self.by_parameters[..]);
             let (program, constants) = (self.mechanism.program(), self.mechanism.constants());
             Rc::new(Directional::new(program, constants, parameters, self.k, &quantities))
@@ -129,10 +156,7 @@ impl<'m> Field<'m> {
         let rates = Rates { time: at.time_by, coordinates: by_q, speeds: by_u, inputs: &self.by_inputs };
         let (mut values, mut derivatives) = (Vec::new(), Vec::new());
         let done = self.routine(key).evaluate(&arguments, &rates, &mut values, &mut derivatives);
-        done.map_err(|failed| match failed {
-            Failed::Singular(_) => StateError::Singular { what: "the state" },
-            Failed::NotFinite => StateError::NotFinite,
-        })?;
+        done.map_err(failed)?;
         Ok((values, derivatives))
     }
 
@@ -145,12 +169,16 @@ impl<'m> Field<'m> {
 
     /// The rates without contact forces, and the terms for the forces at these contacts.
     pub fn contact_terms(&self, contacts: &[usize], at: &At<'_>) -> Result<ContactTerms, StateError> {
-        let (n, p) = (self.n, self.p);
         let (values, by) = self.compute(RoutineKey::ContactTerms(contacts.to_vec()), at)?;
-        if values.len() != n + p + contacts.len() * (6 * p + 6) {
-            return Err(StateError::Undefined { what: "closed contact" });
-        }
-        Ok(ContactTerms { n, p, k: self.k, values, by })
+        ContactTerms { n: self.n, p: self.p, k: self.k, values, by }.of_contacts(contacts.len())
+    }
+}
+
+/// Why equations have no value.
+pub(crate) fn failed(failed: Failed) -> StateError {
+    match failed {
+        Failed::Singular(_) => StateError::Singular { what: "the state" },
+        Failed::NotFinite => StateError::NotFinite,
     }
 }
 
@@ -172,6 +200,20 @@ pub(crate) struct ContactTerms {
 }
 
 impl ContactTerms {
+    /// Terms without derivatives.
+    pub fn values(field: &Field<'_>, values: Vec<f64>, contacts: usize) -> Result<Self, StateError> {
+        ContactTerms { n: field.n, p: field.p, k: 0, values, by: Vec::new() }.of_contacts(contacts)
+    }
+
+    /// Checks that all contacts have their terms.
+    fn of_contacts(self, contacts: usize) -> Result<Self, StateError> {
+        if self.values.len() == self.of(contacts) {
+            Ok(self)
+        } else {
+            Err(StateError::Undefined { what: "closed contact" })
+        }
+    }
+
     /// The value with this index.
     pub fn value(&self, index: usize) -> f64 {
         self.values[index]

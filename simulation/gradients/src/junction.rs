@@ -4,7 +4,7 @@
 
 use hodograph::{ImpactDerivative, NonSmoothness, ReducedMatrix, Selection, Surface, derivative};
 use hodograph_simulation::{CollisionRecord, Event, EventKind, Guard, SmoothPart};
-use nalgebra::Vector3;
+use nalgebra::{SMatrix, SVector, Vector3};
 
 use crate::Reason;
 use crate::field::{At, ContactTerms, Field};
@@ -36,7 +36,41 @@ pub(crate) struct EventDerivatives {
     pub after: Vec<Vec<f64>>,
     /// derivatives of the state at the fixed time, after the events
     pub by: Vec<f64>,
+    /// what the transpose needs
+    pub junction: Junction,
 }
+
+/// What takes derivatives through the events at one time, whatever the directions.
+#[derive(Clone, Debug)]
+pub(crate) struct Junction {
+    /// the modes before
+    pub modes: Vec<Mode>,
+    /// rate of the function that ended the part
+    pub guard_rate: f64,
+    /// rates of the state before and after (n + p)
+    pub rates_before: Vec<f64>,
+    pub rates_after: Vec<f64>,
+    /// the collisions, one after the other
+    pub collisions: Vec<Struck>,
+}
+
+/// A collision with its derivative.
+#[derive(Clone, Debug)]
+pub(crate) struct Struck {
+    pub contact: usize,
+    /// the state before (n + p)
+    pub state: Vec<f64>,
+    /// along n, t, s, N s
+    pub impulse: Vector3<f64>,
+    /// its derivative by approach (3), reduced matrix (6), mu and e
+    pub impulse_by: SMatrix<f64, 3, ARGUMENTS>,
+}
+
+/// Number of arguments of the impact solver that have derivatives: approach (3), the upper half of the reduced matrix
+/// by rows (6), mu and e.
+pub(crate) const ARGUMENTS: usize = 11;
+/// Rows and columns of the entries of the reduced matrix among these arguments.
+pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// The state at the end of a part, with its derivatives.
 fn at_end<'a>(part: &'a SmoothPart, state: &'a [f64], by: &'a [f64], time_by: &'a [f64]) -> At<'a> {
@@ -99,32 +133,42 @@ impl Field<'_> {
             self.check_stop(stopped, &at_end(part, &part.last, &there, &time), &sizes)?;
         }
         let (mut now, mut after) = (there.clone(), Vec::with_capacity(events.len()));
+        let mut collisions = Vec::new();
         self.check_impacts(part, next, events)?;
         for event in events {
             if let EventKind::Collision(struck) = &event.kind {
                 let contact = event.contact.unwrap_or(0);
                 let mut state = part.last[..self.n].to_vec();
                 state.extend_from_slice(&struck.speeds_before);
-                let speeds = self.collide(contact, struck, event, &at_end(part, &state, &now, &time));
-                now[self.n * k..].copy_from_slice(&speeds.map_err(|why| (Some(contact), why))?);
+                let found = self.collide(contact, struck, event, &at_end(part, &state, &now, &time));
+                let (speeds, struck) = found.map_err(|why| (Some(contact), why))?;
+                now[self.n * k..].copy_from_slice(&speeds);
+                collisions.push(struck);
             }
             after.push(now.clone());
         }
-        let modes = self::modes(next);
-        let going = self.mode_rates(&modes, &at_start(next, &now)).map_err(|why| (None, why))?;
+        let modes_after = self::modes(next);
+        let going = self.mode_rates(&modes_after, &at_start(next, &now)).map_err(|why| (None, why))?;
         for ((row, size), rate) in now.chunks_exact_mut(k).zip(sizes.chunks_exact_mut(k)).zip(&going.rates) {
             for ((by, size), time) in row.iter_mut().zip(size).zip(&time) {
                 *by -= rate * time;
                 *size += (rate * time).abs();
             }
         }
-        let apart = self.separation(&modes, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
+        let apart = self.separation(&modes_after, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
         if let Some((contact, _, left)) = apart
             && left > TRANSVERSE_SLIP
         {
             return Err((Some(contact), Reason::Inaccurate(left)));
         }
-        Ok(EventDerivatives { time, before: there, after, by: now })
+        let junction = Junction {
+            modes: modes.to_vec(),
+            guard_rate: slopes[k - 1],
+            rates_before: before.rates,
+            rates_after: going.rates,
+            collisions,
+        };
+        Ok(EventDerivatives { time, before: there, after, by: now, junction })
     }
 
     /// The derivatives of the function that ended a part along the directions; the last one is its rate.
@@ -164,8 +208,7 @@ impl Field<'_> {
                 // (mu lambda_n)^2 - lambda_t^2 - lambda_s^2
                 let by: Vec<f64> = (0..self.k)
                     .map(|d| {
-                        let is = self.by.get(d).is_some_and(|by| by.is_friction_of(*contact));
-                        let by_mu = if is { mu * normal.value * normal.value } else { 0.0 };
+                        let by_mu = self.by_friction(d, *contact) * mu * normal.value * normal.value;
                         let held = first.value * first.by[d] + second.value * second.by[d];
                         2.0 * (by_mu + mu * mu * normal.value * normal.by[d] - held)
                     })
@@ -299,21 +342,19 @@ impl Field<'_> {
         Ok(())
     }
 
-    /// The derivatives of the speeds after a collision (p rows, k columns).
+    /// The derivatives of the speeds after a collision (p rows, k columns), and the collision.
     fn collide(
         &self,
         contact: usize,
         struck: &CollisionRecord,
         event: &Event,
         at: &At<'_>,
-    ) -> Result<Vec<f64>, Reason> {
+    ) -> Result<(Vec<f64>, Struck), Reason> {
         let (n, p, k) = (self.n, self.p, self.k);
         let contact_terms = self.contact_terms(&[contact], at).map_err(Reason::State)?;
-        // The arguments of the solver: approach, reduced matrix, mu, e.
-        let axes = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
         let mut matrix = [0.0; 6];
-        let mut by: Vec<[f64; 11]> = vec![[0.0; 11]; k];
-        for (entry, (row, column)) in axes.into_iter().enumerate() {
+        let mut by: Vec<[f64; ARGUMENTS]> = vec![[0.0; ARGUMENTS]; k];
+        for (entry, (row, column)) in ENTRIES.into_iter().enumerate() {
             for speed in 0..p {
                 let (v, r) = (contact_terms.partial(0, row, speed), contact_terms.response(0, column, speed));
                 matrix[entry] += contact_terms.value(v) * contact_terms.value(r);
@@ -327,9 +368,8 @@ impl Field<'_> {
             for (axis, by) in by.iter_mut().take(3).enumerate() {
                 *by = contact_terms.by(contact_terms.velocity(0, axis))[d];
             }
-            let variable = self.by.get(d);
-            by[9] = if variable.is_some_and(|by| by.is_friction_of(contact)) { 1.0 } else { 0.0 };
-            by[10] = if variable.is_some_and(|by| by.is_restitution_of(contact)) { 1.0 } else { 0.0 };
+            by[9] = self.by_friction(d, contact);
+            by[10] = self.by_restitution(d, contact);
         }
         let approach = Vector3::from_fn(|axis, _| contact_terms.value(contact_terms.velocity(0, axis)));
         let surface = self.surface(contact).ok_or(Reason::ModesChanged)?;
@@ -356,11 +396,13 @@ impl Field<'_> {
                 continue;
             }
             self.smooth(contact, &hit, &by, &approach, surface.mu)?;
-            let restitution = if surface.e == 0.0 && struck.last_bounce { 0.0 } else { 1.0 };
+            let mut impulse_by = hit.impulse;
+            if surface.e == 0.0 && struck.last_bounce {
+                impulse_by.column_mut(10).fill(0.0);
+            }
             let mut speeds = at.by[n * k..].to_vec();
-            for (d, by) in by.iter_mut().enumerate() {
-                by[10] *= restitution;
-                let impulse = hit.impulse * nalgebra::SVector::<f64, 11>::from(*by);
+            for (d, by) in by.iter().enumerate() {
+                let impulse = impulse_by * SVector::<f64, ARGUMENTS>::from(*by);
                 for speed in 0..p {
                     let change = |axis: usize| {
                         let index = response(speed, axis);
@@ -370,7 +412,8 @@ impl Field<'_> {
                     speeds[speed * k + d] += change(0) + change(1) + change(2);
                 }
             }
-            return Ok(speeds);
+            let state = at.state.to_vec();
+            return Ok((speeds, Struck { contact, state, impulse: hit.impact.impulse, impulse_by }));
         }
         Err(Reason::Inaccurate(difference))
     }
@@ -380,7 +423,7 @@ impl Field<'_> {
         &self,
         contact: usize,
         hit: &ImpactDerivative<f64>,
-        by: &[[f64; 11]],
+        by: &[[f64; ARGUMENTS]],
         approach: &Vector3<f64>,
         mu: f64,
     ) -> Result<(), Reason> {
@@ -389,8 +432,8 @@ impl Field<'_> {
             return Err(Reason::Impact(why));
         }
         // Without slip there is a derivative along directions that cause none, and without friction.
-        let by_mu = self.by.iter().any(|by| by.is_friction_of(contact));
-        let slips = |by: &[f64; 11]| {
+        let by_mu = (0..self.k).any(|d| self.by_friction(d, contact) != 0.0);
+        let slips = |by: &[f64; ARGUMENTS]| {
             let size = by[0].abs() + approach.x.abs();
             by[1].abs().max(by[2].abs()) > NEGLIGIBLE * size
         };

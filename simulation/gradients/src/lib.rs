@@ -32,6 +32,7 @@
 //!
 //! Theory: docs/theory.md, sections 19 to 22.
 
+mod adjoint;
 mod branch;
 mod by;
 mod family;
@@ -39,13 +40,16 @@ mod field;
 mod fit;
 mod junction;
 mod loss;
+mod mode_rates;
 mod modes;
 mod motion;
 mod orbit;
 pub mod statistics;
 mod trajectory;
+mod transposed;
 pub mod validation;
 
+pub use adjoint::Adjoint;
 pub use branch::{Branch, BranchPoint, Change, ChangeKind, follow_branch};
 pub use by::{By, Reason, Undefined};
 pub use family::with_values;

@@ -13,8 +13,8 @@ use hodograph_simulation::{
 };
 use nalgebra::{DMatrix, DVector};
 
-use crate::field::{At, Field};
-use crate::junction::{EventDerivatives, NonDifferentiable, at_start, modes};
+use crate::field::{At, Direction, Field};
+use crate::junction::{EventDerivatives, Junction, NonDifferentiable, at_start, modes};
 use crate::modes::{Mode, ModeKind};
 use crate::{By, Reason, Undefined};
 
@@ -133,36 +133,58 @@ pub(crate) fn differentiate_from(
     times: &[f64],
     how: Start,
 ) -> Result<MotionGradient, GradientError> {
-    check_request(mechanism, start, by, times)?;
-    let surfaces = supported(mechanism, start, &options)?;
-    let tolerances =
-        Tolerances { relative: options.relative_tolerance, absolute: options.absolute_tolerance };
-    let end = times.last().copied().unwrap_or(start.time);
-    let mut simulation = Simulation::new(mechanism, start, options)?;
-    simulation.keep_parts();
-    let (mut events, mut parts, mut samples) = (Vec::new(), Vec::new(), Vec::new());
-    for &time in times {
-        events.extend(simulation.advance_to(time)?);
-        parts.extend(simulation.take_parts());
-        let state = [simulation.coordinates(), simulation.speeds()].concat();
-        samples.push(Sample { time, state, derivative: None });
+    let followed = Followed::new(mechanism, start, options, by, times)?;
+    let directions = by.iter().map(|&by| vec![(by, 1.0)]).collect();
+    let mut propagation = Propagation::new(&followed, mechanism, start, directions);
+    propagation.follow(&followed, how);
+    Ok(MotionGradient { by: by.to_vec(), ..propagation.motion })
+}
+
+/// A motion that was simulated, to be differentiated.
+pub(crate) struct Followed {
+    pub parts: Vec<SmoothPart>,
+    /// up to the last of the given times
+    pub events: Vec<Event>,
+    /// the states at the given times, without derivatives
+    pub samples: Vec<Sample>,
+    /// first and last time, s
+    pub start: f64,
+    pub end: f64,
+    pub surfaces: Vec<(usize, Surface<f64>)>,
+    pub tolerances: Tolerances,
+}
+
+impl Followed {
+    /// Simulates a motion that supports derivatives.
+    pub fn new(
+        mechanism: &InterpretedMechanism,
+        start: &State<'_>,
+        options: Options,
+        by: &[By],
+        times: &[f64],
+    ) -> Result<Self, GradientError> {
+        check_request(mechanism, start, by, times)?;
+        let surfaces = supported(mechanism, start, &options)?;
+        let tolerances =
+            Tolerances { relative: options.relative_tolerance, absolute: options.absolute_tolerance };
+        let end = times.last().copied().unwrap_or(start.time);
+        let mut simulation = Simulation::new(mechanism, start, options)?;
+        simulation.keep_parts();
+        let (mut events, mut parts, mut samples) = (Vec::new(), Vec::new(), Vec::new());
+        for &time in times {
+            events.extend(simulation.advance_to(time)?);
+            parts.extend(simulation.take_parts());
+            let state = [simulation.coordinates(), simulation.speeds()].concat();
+            samples.push(Sample { time, state, derivative: None });
+        }
+        if parts.last().is_none_or(|part: &SmoothPart| part.end <= end) {
+            // Events at the end need the motion after them.
+            simulation.advance_to(end.next_up())?;
+            parts.extend(simulation.take_parts());
+        }
+        events.retain(|event| event.time <= end);
+        Ok(Followed { parts, events, samples, start: start.time, end, surfaces, tolerances })
     }
-    if parts.last().is_none_or(|part: &SmoothPart| part.end <= end) {
-        // Events at the end need the motion after them.
-        simulation.advance_to(end.next_up())?;
-        parts.extend(simulation.take_parts());
-    }
-    events.retain(|event| event.time <= end);
-    let field = Field::new(mechanism, by, &surfaces);
-    let mut propagation = Propagation {
-        by: seeds(&field, mechanism, start),
-        field,
-        tolerances,
-        since: start.time,
-        motion: MotionGradient { by: by.to_vec(), events: Vec::new(), samples, undefined: None },
-    };
-    propagation.follow((start.time, how), &parts, events, end);
-    Ok(propagation.motion)
 }
 
 fn check_request(
@@ -238,15 +260,21 @@ fn supported(
     Ok(surfaces)
 }
 
-/// The derivatives of the start state.
-fn seeds(field: &Field<'_>, mechanism: &InterpretedMechanism, start: &State<'_>) -> Vec<f64> {
-    let (n, k) = (field.n, field.k);
-    let mut by = vec![0.0; (n + field.p) * k];
-    for (direction, variable) in field.by.iter().enumerate() {
-        match *variable {
-            By::Coordinate(index) => by[index * k + direction] = 1.0,
-            By::Speed(index) => by[(n + index) * k + direction] = 1.0,
-            _ => {}
+/// The derivatives of the start state along directions (n + p rows, a column for each and one more).
+pub(crate) fn seeds(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    directions: &[Direction],
+) -> Vec<f64> {
+    let (n, k) = (start.coordinates.len(), directions.len() + 1);
+    let mut by = vec![0.0; (n + start.speeds.len()) * k];
+    for (direction, variables) in directions.iter().enumerate() {
+        for &(variable, rate) in variables {
+            match variable {
+                By::Coordinate(index) => by[index * k + direction] += rate,
+                By::Speed(index) => by[(n + index) * k + direction] += rate,
+                _ => {}
+            }
         }
     }
     for quaternion in mechanism.quaternions() {
@@ -265,19 +293,74 @@ fn seeds(field: &Field<'_>, mechanism: &InterpretedMechanism, start: &State<'_>)
 }
 
 /// The state of the propagation of derivatives through a motion.
-struct Propagation<'m> {
-    field: Field<'m>,
+pub(crate) struct Propagation<'m> {
+    pub field: Field<'m>,
     tolerances: Tolerances,
     /// derivatives of the state: n + p rows, k columns
     by: Vec<f64>,
     /// time of the previous events, s
     since: f64,
-    motion: MotionGradient,
+    pub motion: MotionGradient,
+    /// how the derivatives were carried, if that is to be kept
+    pub pieces: Option<Vec<Piece>>,
 }
 
-impl Propagation<'_> {
-    fn follow(&mut self, (start, how): (f64, Start), parts: &[SmoothPart], events: Vec<Event>, end: f64) {
-        let mut events = events.into_iter().peekable();
+/// One after the other these take derivatives through a motion.
+#[derive(Clone, Debug)]
+pub(crate) enum Piece {
+    /// A step of the integration within a part.
+    Step {
+        /// index of the part
+        part: usize,
+        t: f64,
+        h: f64,
+        /// the state at its start
+        state: Vec<f64>,
+    },
+    /// A line along the rates at the start of a part.
+    Straight {
+        part: usize,
+        /// s
+        time: f64,
+    },
+    /// The sample with this index is taken.
+    Sample(usize),
+    /// The events at the end of a part.
+    Events {
+        part: usize,
+        junction: Box<Junction>,
+        /// their indices
+        events: Range<usize>,
+    },
+}
+
+impl<'m> Propagation<'m> {
+    pub fn new(
+        followed: &Followed,
+        mechanism: &'m InterpretedMechanism,
+        start: &State<'_>,
+        directions: Vec<Direction>,
+    ) -> Self {
+        Propagation {
+            by: seeds(mechanism, start, &directions),
+            field: Field::new(mechanism, directions, followed.surfaces.clone()),
+            tolerances: followed.tolerances.clone(),
+            since: followed.start,
+            motion: MotionGradient {
+                by: Vec::new(),
+                events: Vec::new(),
+                samples: followed.samples.clone(),
+                undefined: None,
+            },
+            pieces: None,
+        }
+    }
+
+    /// Carries the derivatives through the motion.
+    pub fn follow(&mut self, followed: &Followed, how: Start) {
+        let Followed { parts, start, end, .. } = followed;
+        let (start, end) = (*start, *end);
+        let mut events = followed.events.iter().cloned().peekable();
         let at_once = |time: f64| move |event: &Event| event.time <= time;
         let first: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(start))).collect();
         if let Err(lacking) = self.begin(how, parts, &first) {
@@ -299,7 +382,7 @@ impl Propagation<'_> {
             let within = sampled..sampled + rest.iter().take_while(|sample| sample.time < part.end).count();
             sampled = within.end;
             if self.motion.undefined.is_none()
-                && let Err((time, why)) = self.through(part, within, end)
+                && let Err((time, why)) = self.through((index, part), within, end)
             {
                 self.lacks(time, (None, why));
             }
@@ -307,13 +390,13 @@ impl Propagation<'_> {
                 break;
             }
             let here: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(part.end))).collect();
-            self.at_end(part, parts.get(index + 1), here);
+            self.at_end((index, part), parts.get(index + 1), here);
             sampled = self.sample(sampled, part.end);
         }
     }
 
     /// Checks the start: closed contacts must stay closed along all directions.
-    fn begin(&mut self, how: Start, parts: &[SmoothPart], events: &[Event]) -> Result<(), NonDifferentiable> {
+    pub fn begin(&mut self, how: Start, parts: &[SmoothPart], events: &[Event]) -> Result<(), NonDifferentiable> {
         let contacts = self.field.mechanism.count(ComponentKind::Contact);
         if parts.iter().flat_map(|part| &part.closed).any(|closed| closed.contact >= contacts) {
             return Err((None, Reason::ModesChanged));
@@ -343,10 +426,17 @@ impl Propagation<'_> {
             .map_err(|why| (None, why))?
         {
             Some((contact, direction, left)) if left > MAX_SEPARATION => {
-                let by = self.field.by.get(direction).copied();
-                Err((Some(contact), by.map_or(Reason::ModesChanged, Reason::StartInContact)))
+                let variables = self.field.directions_of.get(direction);
+                let by = variables.and_then(|variables| variables.first());
+                Err((Some(contact), by.map_or(Reason::ModesChanged, |(by, _)| Reason::StartInContact(*by))))
             }
             _ => Ok(()),
+        }
+    }
+
+    fn keep(&mut self, piece: impl FnOnce() -> Piece) {
+        if let Some(pieces) = &mut self.pieces {
+            pieces.push(piece());
         }
     }
 
@@ -365,8 +455,9 @@ impl Propagation<'_> {
         let due = self.motion.samples[from..].iter().take_while(|sample| sample.time <= time).count();
         if self.motion.undefined.is_none() {
             let by = self.matrix(&self.by);
-            for sample in &mut self.motion.samples[from..from + due] {
-                sample.derivative = Some(by.clone());
+            for index in from..from + due {
+                self.motion.samples[index].derivative = Some(by.clone());
+                self.keep(|| Piece::Sample(index));
             }
         }
         from + due
@@ -374,7 +465,13 @@ impl Propagation<'_> {
 
     /// Carries the derivatives through a part and to the samples within it; the error says from which time on
     /// this is impossible. The part is integrated again with derivatives, and must agree with the motion.
-    fn through(&mut self, part: &SmoothPart, samples: Range<usize>, end: f64) -> Result<(), (f64, Reason)> {
+    fn through(
+        &mut self,
+        part: (usize, &SmoothPart),
+        samples: Range<usize>,
+        end: f64,
+    ) -> Result<(), (f64, Reason)> {
+        let (of, part) = part;
         let modes = modes(part);
         let count = part.first.len();
         let mut y = part.first.clone();
@@ -382,12 +479,13 @@ impl Propagation<'_> {
         let mut now = part.start;
         for index in samples {
             let time = self.motion.samples[index].time;
-            self.carry(part, &modes, (now, time), &mut y).map_err(|why| (now, why))?;
+            self.carry((of, part), &modes, (now, time), &mut y).map_err(|why| (now, why))?;
             agree(&y[..count], &self.motion.samples[index].state).map_err(|why| (now, why))?;
             self.motion.samples[index].derivative = Some(self.matrix(&y[count..]));
+            self.keep(|| Piece::Sample(index));
             now = time;
         }
-        self.carry(part, &modes, (now, part.end.min(end)), &mut y).map_err(|why| (now, why))?;
+        self.carry((of, part), &modes, (now, part.end.min(end)), &mut y).map_err(|why| (now, why))?;
         if part.end <= end {
             agree(&y[..count], &part.last).map_err(|why| (now, why))?;
         }
@@ -397,25 +495,43 @@ impl Propagation<'_> {
 
     /// State and derivatives, carried from one time to another within a part.
     fn carry(
-        &self,
-        part: &SmoothPart,
+        &mut self,
+        part: (usize, &SmoothPart),
         modes: &[Mode],
         (from, to): (f64, f64),
         y: &mut [f64],
     ) -> Result<(), Reason> {
-        match &part.ended_by {
-            Some(Guard::Slip(_)) => self.straight(part, modes, to - from, y),
+        match &part.1.ended_by {
+            Some(Guard::Slip(_)) => {
+                let time = to - from;
+                self.keep(|| Piece::Straight { part: part.0, time });
+                self.straight(part.1, modes, time, y)
+            }
             _ => self.integrate(part, modes, (from, to), y),
         }
     }
 
     /// Integrates the variational equations from one time to another.
     fn integrate(
-        &self,
-        part: &SmoothPart,
+        &mut self,
+        (of, part): (usize, &SmoothPart),
         modes: &[Mode],
         (from, to): (f64, f64),
         y: &mut [f64],
+    ) -> Result<(), Reason> {
+        let mut pieces = self.pieces.take();
+        let done = self.steps((of, part), modes, (from, to), y, pieces.as_mut());
+        self.pieces = pieces;
+        done
+    }
+
+    fn steps(
+        &self,
+        (of, part): (usize, &SmoothPart),
+        modes: &[Mode],
+        (from, to): (f64, f64),
+        y: &mut [f64],
+        mut pieces: Option<&mut Vec<Piece>>,
     ) -> Result<(), Reason> {
         let count = part.first.len();
         let mut failed = None;
@@ -439,6 +555,9 @@ impl Propagation<'_> {
                 return Ok(());
             }
             let Some(made) = step(&mut rates, (now, y, None), h, &self.tolerances) else { break };
+            if let Some(pieces) = &mut pieces {
+                pieces.push(Piece::Step { part: of, t: now, h: made.h, state: y[..count].to_vec() });
+            }
             // The sum of steps may miss the end by rounding.
             now = if made.h >= to - now { to } else { now + made.h };
             y.copy_from_slice(&made.end);
@@ -458,7 +577,8 @@ impl Propagation<'_> {
     }
 
     /// Carries the derivatives through the events at the end of a part.
-    fn at_end(&mut self, part: &SmoothPart, next: Option<&SmoothPart>, events: Vec<Event>) {
+    fn at_end(&mut self, part: (usize, &SmoothPart), next: Option<&SmoothPart>, events: Vec<Event>) {
+        let (of, part) = part;
         // If a normal force or the friction reaches its limit, but all contacts keep their modes, nothing
         // changes.
         let goes_on = |next: &SmoothPart| events.is_empty() && kinds(part) == kinds(next);
@@ -480,6 +600,9 @@ impl Propagation<'_> {
                 Ok(passed) => {
                     self.by.copy_from_slice(&passed.by);
                     self.since = part.end;
+                    let first = self.motion.events.len();
+                    let (junction, events) = (&passed.junction, first..first + events.len());
+                    self.keep(|| Piece::Events { part: of, junction: Box::new(junction.clone()), events });
                     Some(passed)
                 }
                 Err(lacking) => {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hodograph::{Law, Mechanism, State, Surface};
-use hodograph_gradients::{By, MotionGradient, differentiate};
+use hodograph_gradients::{Adjoint, By, MotionGradient, differentiate};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Options, Simulation};
 use nalgebra::{DMatrix, DVector};
@@ -31,10 +31,25 @@ pub struct Task {
 }
 
 impl Task {
-    pub fn differentiate(&self, by: &[By], times: &[f64]) -> MotionGradient {
-        let state = State { time: 0.0, coordinates: &self.q, speeds: &self.u, inputs: &[] };
+    fn state(&self) -> State<'_> {
+        State { time: 0.0, coordinates: &self.q, speeds: &self.u, inputs: &[] }
+    }
+
+    pub fn forwards(&self, by: &[By], times: &[f64]) -> MotionGradient {
         let options = options(self.mu, self.e, self.law);
-        differentiate(&self.mechanism, &state, options, by, times).unwrap()
+        differentiate(&self.mechanism, &self.state(), options, by, times).unwrap()
+    }
+
+    pub fn adjoint(&self, by: &[By], times: &[f64]) -> Adjoint<'_> {
+        let options = options(self.mu, self.e, self.law);
+        Adjoint::new(&self.mechanism, &self.state(), options, by, times).unwrap()
+    }
+
+    /// The derivatives, found forwards and backwards.
+    pub fn differentiate(&self, by: &[By], times: &[f64]) -> MotionGradient {
+        let forwards = self.forwards(by, times);
+        compare(&forwards, &self.adjoint(by, times));
+        forwards
     }
 
     /// The variable, changed by `h`.
@@ -107,6 +122,51 @@ impl Task {
             }
         }
         compared
+    }
+}
+
+/// Compares all derivatives with those that are found backwards.
+fn compare(forwards: &MotionGradient, adjoint: &Adjoint<'_>) {
+    assert_eq!(forwards.undefined, adjoint.undefined().cloned());
+    let mut bits = 7_u64;
+    let mut weight = || {
+        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let mut weights: Vec<DVector<f64>> = Vec::new();
+    let mut expected = DVector::zeros(forwards.by.len());
+    let mut size = 0.0;
+    for (sample, own) in forwards.samples.iter().zip(adjoint.samples()) {
+        assert_eq!((sample.time, &sample.state), (own.time, &own.state));
+        let mut of = DVector::from_fn(sample.state.len(), |_, _| weight());
+        match &sample.derivative {
+            Some(by) => {
+                expected += by.transpose() * &of;
+                size += by.amax();
+            }
+            None => {
+                // Asked for alone, it says why.
+                let mut alone = vec![DVector::zeros(of.len()); forwards.samples.len()];
+                alone[weights.len()] = of.clone();
+                assert_eq!(adjoint.of_states(&alone).err(), forwards.undefined);
+                of.fill(0.0);
+            }
+        }
+        weights.push(of);
+    }
+    let found = adjoint.of_states(&weights).unwrap();
+    assert!((&found - &expected).amax() <= 1e-9 * size, "{}", found - expected);
+    // At most twenty of the events, spread over the motion.
+    let step = forwards.events.len().div_ceil(20).max(1);
+    for (index, event) in forwards.events.iter().enumerate().step_by(step) {
+        match (&event.time, adjoint.of_time(index)) {
+            (Some(time), Ok(Some(found))) => {
+                assert!((&found - time).amax() <= 1e-9 * time.amax(), "{}", found - time);
+            }
+            (None, Ok(None)) => {}
+            (None, Err(why)) => assert_eq!(Some(why), forwards.undefined),
+            (forwards, backwards) => panic!("{forwards:?} {backwards:?}"),
+        }
     }
 }
 

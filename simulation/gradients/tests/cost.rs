@@ -47,7 +47,7 @@ fn ten_derivatives_cost_less_than_five_motions() {
             let options = options(task.mu, task.e, task.law);
             Simulation::new(&task.mechanism, &state, options).unwrap().advance_to(until).unwrap();
         });
-        let both = least(|| assert!(task.differentiate(&by, &[until]).undefined.is_none()));
+        let both = least(|| assert!(task.forwards(&by, &[until]).undefined.is_none()));
         let ratio = both.as_secs_f64() / alone.as_secs_f64();
         println!("{alone:?} and {both:?}: {ratio:.2} times");
         assert!(ratio < 5.0, "{ratio}");

@@ -8,6 +8,7 @@ use crate::interpret::constants::Constants;
 use crate::interpret::prepared::{Arguments, Failed};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
+use crate::program::slopes::{slope, slopes_of_two};
 use crate::program::{Inputs, Program, Quantity, operate};
 use hodograph_model::arithmetic::{Arithmetic, Function, call, call2, mul_add, sin_cos};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -232,41 +233,13 @@ impl Arithmetic for Dual {
     }
 
     fn call(self, function: Function) -> Self {
-        let a = self.value;
-        let value = call(function, a);
-        let slope = match function {
-            Function::Sin => sin_cos(a).1,
-            Function::Cos => -sin_cos(a).0,
-            Function::Tan => mul_add(value, value, 1.0),
-            Function::Asin => 1.0 / call(Function::Sqrt, (1.0 - a) * (1.0 + a)),
-            Function::Acos => -1.0 / call(Function::Sqrt, (1.0 - a) * (1.0 + a)),
-            Function::Atan => 1.0 / mul_add(a, a, 1.0),
-            Function::Sqrt => 0.5 / value,
-            Function::Exp => value,
-            Function::Log => 1.0 / a,
-            Function::Sinh => call(Function::Cosh, a),
-            Function::Cosh => call(Function::Sinh, a),
-            Function::Tanh => (1.0 - value) * (1.0 + value),
-            Function::Abs => call(Function::Sign, a),
-            Function::Sign | Function::Frozen => 0.0,
-            Function::Atan2 | Function::Min | Function::Max => f64::NAN,
-        };
-        self.with(value, slope)
+        let value = call(function, self.value);
+        self.with(value, slope(function, self.value, value))
     }
 
     fn call2(self, function: Function, b: Self) -> Self {
         let value = call2(function, self.value, b.value);
-        let slopes = match function {
-            Function::Atan2 => {
-                let square = self.value * self.value + b.value * b.value;
-                (b.value / square, -self.value / square)
-            }
-            // If both are equal, the derivative is that of the first.
-            Function::Min | Function::Max if value == self.value => (1.0, 0.0),
-            Function::Min | Function::Max => (0.0, 1.0),
-            _ => (f64::NAN, f64::NAN),
-        };
-        self.of_two(b, value, slopes)
+        self.of_two(b, value, slopes_of_two(function, (self.value, b.value), value))
     }
 }
 

@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 use super::constants::Constants;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
+use crate::program::slopes::slopes;
 use crate::program::{Program, Slice};
 use hodograph_model::arithmetic::{Arithmetic, Function};
 
@@ -27,6 +28,27 @@ enum Code {
     SinCos,
     Call(Function),
     Call2(Function),
+}
+
+impl Code {
+    /// The operation of a step on the numbers at these places.
+    fn operation(self, step: Step) -> Operation {
+        let [a, b, c] = step.map(Value);
+        match self {
+            Code::Neg => Operation::Neg(a),
+            Code::Recip => Operation::Recip(a),
+            Code::Add => Operation::Add(a, b),
+            Code::Sub => Operation::Sub(a, b),
+            Code::Mul => Operation::Mul(a, b),
+            Code::Div => Operation::Div(a, b),
+            Code::MulAdd => Operation::MulAdd(a, b, c),
+            Code::MulSub => Operation::MulSub(a, b, c),
+            Code::NegMulAdd => Operation::NegMulAdd(a, b, c),
+            Code::SinCos => Operation::SinCos(a),
+            Code::Call(function) => Operation::Call(function, a),
+            Code::Call2(function) => Operation::Call2(function, a, b),
+        }
+    }
 }
 
 /// Places of the operands.
@@ -188,6 +210,35 @@ impl Schedule {
             }
         }
         numbers
+    }
+}
+
+impl Schedule {
+    /// The inputs, in the order of the numbers after the constants.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// Adds to the cotangents of all numbers what those of the results of steps contribute, from the last step to
+    /// the first: the transpose of the derivative of [`Schedule::execute`]. `numbers` are those that it returned.
+    pub fn transpose(&self, numbers: &[f64], cotangents: &mut [f64]) {
+        let mut end = self.size;
+        for Run { code, steps } in self.runs.iter().rev() {
+            for &step in self.steps[steps.0..steps.1].iter().rev() {
+                end -= if *code == Code::SinCos { 2 } else { 1 };
+                let by = cotangents[end];
+                if *code == Code::SinCos {
+                    let change = by * numbers[end + 1] - cotangents[end + 1] * numbers[end];
+                    cotangents[step[0] as usize] += change;
+                    continue;
+                }
+                // What does not depend on a value has no derivative by it, even where its slope is infinite.
+                if by != 0.0 {
+                    let operation = code.operation(step);
+                    slopes(operation, numbers[end], |a| numbers[a.index()], |a, slope| cotangents[a.index()] += by * slope);
+                }
+            }
+        }
     }
 }
 

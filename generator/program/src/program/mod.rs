@@ -20,6 +20,7 @@ pub mod passes;
 pub mod quantity;
 mod semantics;
 mod slice;
+pub mod slopes;
 pub mod solve;
 mod straight_line;
 

@@ -5,6 +5,7 @@
 use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Value};
 use crate::program::semantics::operate;
+use crate::program::slopes;
 use crate::program::straight_line::Program;
 use hodograph_model::arbitrary::Arbitrary;
 use hodograph_model::arithmetic::reproducible::Reproducible;
@@ -73,40 +74,6 @@ fn backwards(program: &Program, numbers: &[(f64, f64)], slopes: &mut [f64]) {
         }
         let mut to = |value: Value, change: f64| slopes[value.index()] += slope * change;
         match operation {
-            Constant(_) | Input(_) | SinCos(_) => {}
-            Neg(a) => to(a, -1.0),
-            Add(a, b) => {
-                to(a, 1.0);
-                to(b, 1.0);
-            }
-            Sub(a, b) => {
-                to(a, 1.0);
-                to(b, -1.0);
-            }
-            Mul(a, b) => {
-                to(a, of(b));
-                to(b, of(a));
-            }
-            Div(a, b) => {
-                to(a, 1.0 / of(b));
-                to(b, -numbers[index].0 / of(b));
-            }
-            Recip(a) => to(a, -numbers[index].0 * numbers[index].0),
-            MulAdd(a, b, c) => {
-                to(a, of(b));
-                to(b, of(a));
-                to(c, 1.0);
-            }
-            MulSub(a, b, c) => {
-                to(a, of(b));
-                to(b, of(a));
-                to(c, -1.0);
-            }
-            NegMulAdd(a, b, c) => {
-                to(a, -of(b));
-                to(b, -of(a));
-                to(c, 1.0);
-            }
             Sine(pair) => {
                 if let SinCos(angle) = program.operation(pair) {
                     to(angle, numbers[pair.index()].1);
@@ -119,6 +86,7 @@ fn backwards(program: &Program, numbers: &[(f64, f64)], slopes: &mut [f64]) {
             }
             // Errors of the arguments of functions matter little: arguments are inputs, or nearly so.
             Call(..) | Call2(..) => {}
+            _ => slopes::slopes(operation, numbers[index].0, of, to),
         }
     }
 }
