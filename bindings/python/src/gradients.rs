@@ -2,13 +2,13 @@
 
 use hodograph::{ComponentKind, Mechanism as _, State};
 use hodograph_gradients::{
-    By, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return, Trajectory,
+    Adjoint, By, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return, Trajectory,
     differentiate, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, Options};
 use nalgebra::{DMatrix, DVector};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -105,6 +105,52 @@ fn variables(py: Python<'_>, mechanism: &InterpretedMechanism, names: &[String])
 pub fn matrix<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let numbers = matrix.transpose().as_slice().to_vec();
     PyArray1::from_vec(py, numbers).reshape([matrix.nrows(), matrix.ncols()])
+}
+
+/// Derivatives of functions of the states of a motion at these times, found backwards. `weights` is called with the states
+/// (k, n + p), and returns the gradients of the functions by them (m, k, n + p).
+pub fn adjoint<'py>(
+    py: Python<'py>,
+    machine: &Machine,
+    states: &States<'py>,
+    (by, at): (&[String], &[f64]),
+    weights: &Bound<'py, PyAny>,
+    choices: Choices,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mechanism = machine.derived(py, "derivatives of motions")?;
+    let state = motion::start(py, states)?;
+    let options = motion::options(py, machine, &state, choices, &Raised::default())?;
+    let by = variables(py, mechanism, by)?;
+    let found = py.detach(|| Adjoint::new(mechanism, &state, options, &by, at));
+    let found = found.map_err(|error| gradient_error(py, &error))?;
+    let samples = found.samples();
+    let size = samples.first().map_or(0, |sample| sample.state.len());
+    let numbers: Vec<f64> = samples.iter().flat_map(|sample| &sample.state).copied().collect();
+    let seen = PyArray1::from_vec(py, numbers).reshape([samples.len(), size])?;
+    let weights: PyReadonlyArray3<'py, f64> = weights.call1((&seen,))?.extract()?;
+    let [functions, times, own] = [0, 1, 2].map(|axis| weights.shape()[axis]);
+    if (times, own) != (samples.len(), size) {
+        let expected = (samples.len(), size);
+        return Err(argument(
+            py,
+            &format!("the weights have the shape (.., {times}, {own}): expected (.., {}, {})", expected.0, expected.1),
+        ));
+    }
+    let weights = weights.as_array();
+    let mut gradients = Vec::with_capacity(functions * by.len());
+    for function in weights.outer_iter() {
+        let weights: Vec<DVector<f64>> =
+            function.outer_iter().map(|row| DVector::from_iterator(size, row.iter().copied())).collect();
+        let gradient = found.of_states(&weights).map_err(|why| {
+            let contact = contact_of(mechanism, why.contact).map(str::to_owned);
+            errors::error(py, "SimulationError", &why.to_string(), "not_differentiable", contact, Some(why.time))
+        })?;
+        gradients.extend_from_slice(gradient.as_slice());
+    }
+    let all = PyDict::new(py);
+    all.set_item("states", seen)?;
+    all.set_item("by", PyArray1::from_vec(py, gradients).reshape([functions, by.len()])?)?;
+    Ok(all)
 }
 
 fn contact_of(mechanism: &InterpretedMechanism, contact: Option<usize>) -> Option<&str> {

@@ -442,6 +442,20 @@ impl Mechanism {
         gradients::gradient(py, &self.inner, &states, &by, &at, choices)
     }
 
+    /// Derivatives of functions of a motion at these times by these variables, found backwards.
+    fn _adjoint<'py>(
+        &self,
+        py: Python<'py>,
+        states: [Option<Bound<'py, PyAny>>; 4],
+        by: Vec<String>,
+        at: Vec<f64>,
+        weights: &Bound<'py, PyAny>,
+        choices: Choices,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let states = self.states(py, borrowed(&states))?;
+        gradients::adjoint(py, &self.inner, &states, (&by, &at), weights, choices)
+    }
+
     /// Periodic motions: one next to a state, or a branch of them through a variable.
     fn _orbit<'py>(
         &self,

@@ -195,6 +195,29 @@ def test_gradients_of_motions_are_those_of_differences():
         m.gradient(["nothing"], [0.1], **surface)
 
 
+def test_gradients_backwards_are_those_forwards():
+    m = model("planar_double_pendulum")
+    by = [c.name for c in (*m.coordinates, *m.speeds, *m.parameters)] + ["mu", "e"]
+    surface, times = dict(mu=0.2, e=0.6, law="poisson"), [0.1, 0.5]
+    forwards = m.gradient(by, times, **surface)
+    every = np.concatenate([forwards.q_by, forwards.u_by], axis=1)
+    weights = np.random.default_rng(5).normal(size=(3, 2, 4))
+    backwards = m.adjoint(by, times, weights, **surface)
+    np.testing.assert_allclose(backwards.by, np.einsum("mkx,kxv->mv", weights, every), rtol=1e-9, atol=1e-9 * abs(every).max())
+    # the gradient of half the squares of the states
+    squares = m.adjoint(by, times, lambda q, u: np.concatenate([q, u], axis=1), **surface)
+    states = np.concatenate([squares.q, squares.u], axis=1)
+    assert squares.by.shape == (len(by),)
+    np.testing.assert_allclose(squares.by, np.einsum("kx,kxv->v", states, every), rtol=1e-9, atol=1e-9 * abs(every).max())
+    with pytest.raises(hodograph.ArgumentError, match="expected"):
+        m.adjoint(by, times, np.zeros((2, 3)), **surface)
+    # four corners that strike at once
+    cube = hodograph.load(ROOT / "simulation/models/measured_cube.mech")
+    with pytest.raises(hodograph.SimulationError, match="several contacts") as raised:
+        cube.adjoint(["mu"], 0.5, np.ones(13), q=[0, 0, 0.3, 1, 0, 0, 0], u=np.zeros(6), mu=0.2, e=0.4, law="poisson")
+    assert raised.value.kind == "not_differentiable"
+
+
 def test_orbits_and_branches_of_the_bouncing_ball_on_a_plate():
     m = hodograph.load(ROOT / "simulation/gradients/tests/models/ball_on_plate.mech")
     a, g, w, e = 0.002, 9.81, 60.0, 0.7

@@ -1,7 +1,7 @@
 //! Derivatives of a few outputs of a motion by many variables, backwards: the transposes of all that carries
 //! derivatives forwards, from the last to the first. The cost does not depend on the number of variables.
 //!
-//! Theory: docs/theory.md, section 19.7.
+//! Theory: docs/theory.md, section 19.5.
 
 use hodograph::State;
 use hodograph_interpreter::InterpretedMechanism;
@@ -70,7 +70,9 @@ impl<'m> Adjoint<'m> {
         let mut propagation = Propagation::new(&followed, mechanism, start, vec![direction.clone()]);
         propagation.pieces = Some(Vec::new());
         propagation.follow(&followed, Start::Free);
-        if let Some(Undefined { reason: reason @ Reason::StartInContact(_), .. }) = &mut propagation.motion.undefined {
+        if let Some(Undefined { reason: reason @ Reason::StartInContact(_), .. }) =
+            &mut propagation.motion.undefined
+        {
             // Which of the variables it is, the direction of all does not say.
             let mut apart = Propagation::new(&followed, mechanism, start, each);
             if let Err((_, why)) = apart.begin(Start::Free, &followed.parts, &[]) {
@@ -115,7 +117,11 @@ impl<'m> Adjoint<'m> {
         assert_eq!(weights.len(), samples.len(), "a vector of weights for each time");
         let mut along = Sum::default();
         for (sample, weights) in samples.iter().zip(weights) {
-            assert_eq!(weights.len(), sample.state.len(), "a weight for each coordinate and independent speed");
+            assert_eq!(
+                weights.len(),
+                sample.state.len(),
+                "a weight for each coordinate and independent speed"
+            );
             match &sample.derivative {
                 Some(by) => by.iter().zip(weights.iter()).for_each(|(by, weight)| along.add(by * weight)),
                 None if weights.iter().all(|weight| *weight == 0.0) => {}

@@ -118,7 +118,8 @@ pub enum Reason {
     /// More than one mode of the contacts is possible, or a sliding contact may lift off or suffer an impact
     /// without collision.
     SeveralModes,
-    /// A sliding contact jams and suffers an impact without collision.
+    /// A sliding contact comes to a jam by itself and suffers an impact without collision: up to there its force grows
+    /// without bound.
     Jam,
     /// The function that ends a mode vanishes together with its rate.
     Tangency,
@@ -158,7 +159,7 @@ impl fmt::Display for Undefined {
             Reason::SeveralModes => write!(out, "more than one mode of the contacts is possible"),
             Reason::Jam => write!(
                 out,
-                "a sliding contact jams: impacts without collision are not differentiated within a motion"
+                "a sliding contact comes to a jam by itself: up to there its force grows without bound"
             ),
             Reason::Tangency => {
                 write!(out, "what ends the mode of a contact vanishes together with its rate")

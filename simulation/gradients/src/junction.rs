@@ -2,7 +2,10 @@
 //!
 //! Theory: docs/theory.md, section 19.2.
 
-use hodograph::{ImpactDerivative, NonSmoothness, ReducedMatrix, Selection, Surface, derivative};
+use hodograph::{
+    ImpactDerivative, NonSmoothness, ReducedMatrix, Selection, Surface, derivative,
+    derivative_without_collision,
+};
 use hodograph_simulation::{CollisionRecord, Event, EventKind, Guard, SmoothPart};
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -54,7 +57,7 @@ pub(crate) struct Junction {
     pub collisions: Vec<Struck>,
 }
 
-/// A collision with its derivative.
+/// A collision, or an impact without one, with its derivative.
 #[derive(Clone, Debug)]
 pub(crate) struct Struck {
     pub contact: usize,
@@ -135,17 +138,24 @@ impl Field<'_> {
         let (mut now, mut after) = (there.clone(), Vec::with_capacity(events.len()));
         let mut collisions = Vec::new();
         self.check_impacts(part, next, events)?;
+        let mut speeds = &part.last[self.n..];
         for event in events {
-            if let EventKind::Collision(struck) = &event.kind {
+            if let EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) = &event.kind {
                 let contact = event.contact.unwrap_or(0);
                 let mut state = part.last[..self.n].to_vec();
                 state.extend_from_slice(&struck.speeds_before);
                 let found = self.collide(contact, struck, event, &at_end(part, &state, &now, &time));
-                let (speeds, struck) = found.map_err(|why| (Some(contact), why))?;
-                now[self.n * k..].copy_from_slice(&speeds);
+                let (speeds_by, struck) = found.map_err(|why| (Some(contact), why))?;
+                now[self.n * k..].copy_from_slice(&speeds_by);
                 collisions.push(struck);
+                speeds = &event.speeds;
             }
             after.push(now.clone());
+        }
+        // No jump of the speeds is left out.
+        let off = difference(speeds, &next.first[self.n..]);
+        if off > SPEED_AGREEMENT {
+            return Err((None, Reason::Inaccurate(off)));
         }
         let modes_after = self::modes(next);
         let going = self.mode_rates(&modes_after, &at_start(next, &now)).map_err(|why| (None, why))?;
@@ -155,7 +165,8 @@ impl Field<'_> {
                 *size += (rate * time).abs();
             }
         }
-        let apart = self.separation(&modes_after, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
+        let apart =
+            self.separation(&modes_after, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
         if let Some((contact, _, left)) = apart
             && left > TRANSVERSE_SLIP
         {
@@ -321,7 +332,9 @@ impl Field<'_> {
         for event in events {
             match &event.kind {
                 EventKind::SimultaneousCollision(_) => return Err((event.contact, Reason::AtOnce)),
-                EventKind::ImpactWithoutCollision(_) => return Err((event.contact, Reason::Jam)),
+                EventKind::ImpactWithoutCollision(_) if matches!(part.ended_by, Some(Guard::Jam)) => {
+                    return Err((event.contact, Reason::Jam));
+                }
                 EventKind::Collision(_) => {
                     opened.extend(event.contact.filter(|contact| !closed(*contact)));
                 }
@@ -342,7 +355,7 @@ impl Field<'_> {
         Ok(())
     }
 
-    /// The derivatives of the speeds after a collision (p rows, k columns), and the collision.
+    /// The derivatives of the speeds after an impact (p rows, k columns), and the impact.
     fn collide(
         &self,
         contact: usize,
@@ -389,7 +402,14 @@ impl Field<'_> {
             event.speeds.iter().chain(&struck.speeds_before).fold(0.0_f64, |size, u| size.max(u.abs()));
         let mut difference = f64::INFINITY;
         for surface in surfaces {
-            let Ok(hit) = derivative(&ReducedMatrix::from(matrix), &approach, &surface) else { continue };
+            let matrix = ReducedMatrix::from(matrix);
+            let hit = match &event.kind {
+                EventKind::ImpactWithoutCollision(_) => {
+                    derivative_without_collision(&matrix, &approach.yz(), &surface)
+                }
+                _ => derivative(&matrix, &approach, &surface),
+            };
+            let Ok(hit) = hit else { continue };
             let off = after(&hit).iter().zip(&event.speeds).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             difference = difference.min(off / greatest);
             if off > SPEED_AGREEMENT * greatest {
@@ -440,6 +460,12 @@ impl Field<'_> {
         let smooth = if mu == 0.0 { !by_mu } else { !by.iter().any(slips) };
         if smooth { Ok(()) } else { Err(Reason::Impact(why)) }
     }
+}
+
+/// The greatest difference between the entries of two lists, relative to their greatest.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let greatest = a.iter().chain(b).fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / greatest
 }
 
 /// The derivatives of a function that ends a mode, given its scale and duration; the error `Tangency` if its

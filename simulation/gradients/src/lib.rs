@@ -23,6 +23,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`Adjoint`] finds derivatives of one function of a motion by many variables, at a cost that does not depend on their
+//! number.
+//!
 //! [`find_orbit`] finds periodic motions by these derivatives, with their multipliers, and [`follow_branch`] follows them
 //! through a parameter.
 //!

@@ -86,8 +86,7 @@ impl Field<'_> {
             let friction = unknown.slip.iter().flat_map(Slip::friction);
             for (axis, (friction, friction_by)) in friction.zip(&friction_by[j]).enumerate() {
                 let by = friction_by.iter().zip(&own.by).map(|(f, l)| -(f * own.value + friction * l));
-                forces[unknown.place][1 + axis] =
-                    Number { value: -friction * own.value, by: by.collect() };
+                forces[unknown.place][1 + axis] = Number { value: -friction * own.value, by: by.collect() };
             }
             forces[unknown.place][unknown.axis] = own;
         }

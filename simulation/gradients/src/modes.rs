@@ -106,10 +106,12 @@ impl Field<'_> {
             }
         }
         let column = |unknown: &Unknown| -> Vec<f64> {
-            let response = |axis, speed| contact_terms.value(contact_terms.response(unknown.place, axis, speed));
+            let response =
+                |axis, speed| contact_terms.value(contact_terms.response(unknown.place, axis, speed));
             let of = |speed| {
                 let friction = unknown.slip.iter().flat_map(Slip::friction).enumerate();
-                friction.fold(response(unknown.axis, speed), |sum, (axis, f)| sum - f * response(1 + axis, speed))
+                friction
+                    .fold(response(unknown.axis, speed), |sum, (axis, f)| sum - f * response(1 + axis, speed))
             };
             (0..p).map(of).collect()
         };
@@ -125,24 +127,23 @@ impl Field<'_> {
         let solver = factors(matrix.clone())?;
         let lambda = if m == 0 { Some(right) } else { solver.solve(&right) };
         let lambda = lambda.ok_or(Reason::State(StateError::NotFinite))?;
-        let pushed =
-            (0..p).map(|speed| (0..m).map(|j| columns[j][speed] * lambda[j]).sum()).collect();
+        let pushed = (0..p).map(|speed| (0..m).map(|j| columns[j][speed] * lambda[j]).sum()).collect();
         Ok(Balance { unknowns, columns, matrix, solver, lambda, pushed })
     }
 
     /// The direction of slip of each closed contact; `None` if it sticks.
-    pub fn directions(
-        modes: &[Mode],
-        contact_terms: &ContactTerms,
-        speeds: &[f64],
-    ) -> Vec<Option<[f64; 2]>> {
+    pub fn directions(modes: &[Mode], contact_terms: &ContactTerms, speeds: &[f64]) -> Vec<Option<[f64; 2]>> {
         let of = |(place, mode): (usize, &Mode)| direction(contact_terms, place, mode.kind, speeds);
         modes.iter().enumerate().map(|found| of(found).map(|(along, _)| along)).collect()
     }
 }
 
 /// The components of contact velocities that the modes keep at zero: index of the contact, and axis.
-pub(crate) fn constrained_rows(contact_terms: &ContactTerms, modes: &[Mode], p: usize) -> Vec<(usize, usize)> {
+pub(crate) fn constrained_rows(
+    contact_terms: &ContactTerms,
+    modes: &[Mode],
+    p: usize,
+) -> Vec<(usize, usize)> {
     let mobility = |&(place, axis): &(usize, usize)| -> f64 {
         let term = |speed| {
             contact_terms.value(contact_terms.partial(place, axis, speed))

@@ -396,7 +396,12 @@ impl<'m> Propagation<'m> {
     }
 
     /// Checks the start: closed contacts must stay closed along all directions.
-    pub fn begin(&mut self, how: Start, parts: &[SmoothPart], events: &[Event]) -> Result<(), NonDifferentiable> {
+    pub fn begin(
+        &mut self,
+        how: Start,
+        parts: &[SmoothPart],
+        events: &[Event],
+    ) -> Result<(), NonDifferentiable> {
         let contacts = self.field.mechanism.count(ComponentKind::Contact);
         if parts.iter().flat_map(|part| &part.closed).any(|closed| closed.contact >= contacts) {
             return Err((None, Reason::ModesChanged));

@@ -1,7 +1,7 @@
 //! The transposes of the derivatives that [`crate::field`], [`crate::mode_rates`] and [`crate::junction`] carry along
 //! directions: what a weighted sum of results changes by with the state, the parameters, the inputs, mu and e.
 //!
-//! Theory: docs/theory.md, section 19.7.
+//! Theory: docs/theory.md, section 19.5.
 
 use std::collections::BTreeMap;
 
@@ -261,8 +261,7 @@ impl<'f> TransposedField<'f> {
         let mut of_forces = vec![[0.0; 3]; modes.len()];
         match part.ended_by.as_ref().ok_or(Reason::ModesChanged)? {
             Guard::Gap(contact) => {
-                let evaluated =
-                    self.evaluate(RoutineKey::Gap(*contact), &place).map_err(Reason::State)?;
+                let evaluated = self.evaluate(RoutineKey::Gap(*contact), &place).map_err(Reason::State)?;
                 let mut by = ByState::none(self.field);
                 self.transpose(&evaluated, &[factor], &mut by);
                 Ok(by)
@@ -322,7 +321,12 @@ impl<'f> TransposedField<'f> {
     }
 
     /// The derivatives of a weighted sum of the changes of the speeds in a collision.
-    fn of_collision(&mut self, part: &SmoothPart, struck: &Struck, of_speeds: &[f64]) -> Result<ByState, Reason> {
+    fn of_collision(
+        &mut self,
+        part: &SmoothPart,
+        struck: &Struck,
+        of_speeds: &[f64],
+    ) -> Result<ByState, Reason> {
         let p = self.field.p;
         let place = Place { time: part.end, state: &struck.state, inputs: &part.inputs };
         let key = RoutineKey::ContactTerms(vec![struck.contact]);

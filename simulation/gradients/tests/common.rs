@@ -126,7 +126,7 @@ impl Task {
 }
 
 /// Compares all derivatives with those that are found backwards.
-fn compare(forwards: &MotionGradient, adjoint: &Adjoint<'_>) {
+pub fn compare(forwards: &MotionGradient, adjoint: &Adjoint<'_>) {
     assert_eq!(forwards.undefined, adjoint.undefined().cloned());
     let mut bits = 7_u64;
     let mut weight = || {

@@ -1,8 +1,8 @@
-//! What derivatives cost beside the motion.
+//! What derivatives cost beside the motion, and backwards by many variables beside few.
 
 use std::time::{Duration, Instant};
 
-use hodograph::{Law, State};
+use hodograph::{ComponentKind, Law, State};
 use hodograph_gradients::By;
 use hodograph_simulation::Simulation;
 
@@ -15,7 +15,7 @@ fn least(mut run: impl FnMut()) -> Duration {
         run();
         begin.elapsed()
     };
-    std::iter::repeat_with(once).take(8).min().unwrap()
+    std::iter::repeat_with(once).take(6).min().unwrap()
 }
 
 /// Ten variables: the motion and its derivatives take less than five times the motion alone.
@@ -52,4 +52,36 @@ fn ten_derivatives_cost_less_than_five_motions() {
         println!("{alone:?} and {both:?}: {ratio:.2} times");
         assert!(ratio < 5.0, "{ratio}");
     }
+}
+
+/// Backwards the 108 variables of an arm that strikes a plane cost little more than one of them: steps are shorter.
+#[test]
+fn all_variables_cost_as_much_as_one_backwards() {
+    let mechanism = read("models/arm_7dof.mech");
+    let count = |kind| hodograph::Mechanism::count(&mechanism, kind);
+    let all: Vec<By> = (0..7)
+        .map(By::Coordinate)
+        .chain((0..7).map(By::Speed))
+        .chain((0..count(ComponentKind::Parameter)).map(By::Parameter))
+        .chain([By::Friction(None), By::Restitution(None)])
+        .collect();
+    let q = vec![0.1, 0.9, -0.2, -0.6, 0.3, 0.4, 0.2];
+    let task = Task { q, u: vec![0.1; 7], mu: 0.4, e: 0.5, law: Law::Stronge, mechanism };
+    let until = 0.65;
+    let checked = task.differentiate(&all, &[until]);
+    assert!(checked.undefined.is_none(), "{:?}", checked.undefined);
+    let collisions = checked.events.iter().filter(|event| event.event.kind.name() == "collision").count();
+    println!("{} events, {collisions} collisions", checked.events.len());
+    let backwards = |by: &[By]| {
+        least(|| {
+            let adjoint = task.adjoint(by, &[until]);
+            assert!(adjoint.of_states(&[nalgebra::DVector::repeat(14, 1.0)]).is_ok());
+        })
+    };
+    let (one, every) = (backwards(&all[..1]), backwards(&all));
+    let forwards = least(|| assert!(task.forwards(&all, &[until]).undefined.is_none()));
+    let (ratio, beside) =
+        (every.as_secs_f64() / one.as_secs_f64(), forwards.as_secs_f64() / every.as_secs_f64());
+    println!("1: {one:?}, {}: {every:?}: {ratio:.2} times; forwards {beside:.1} times that", all.len());
+    assert!(ratio < 2.5 && beside > 4.0, "{ratio} {beside}");
 }

@@ -1,9 +1,11 @@
 //! Derivatives against differences of motions.
 
-use hodograph::Law;
-use hodograph_gradients::By;
+use hodograph::{Law, State, Surface};
+use hodograph_gradients::{Adjoint, By, differentiate};
+use hodograph_simulation::{Options, Simulation};
+use nalgebra::DVector;
 
-use crate::common::{Task, read};
+use crate::common::{Task, compare, read};
 
 /// A rod in a plane falls on its tip, slides, sticks, tumbles and bounces on both ends.
 #[test]
@@ -83,4 +85,65 @@ fn a_ball_bounces_two_hundred_times_on_a_plate() {
     let compared = task.compare(&by, 21.0);
     println!("{compared:?}");
     assert!(compared.events >= 200 && compared.state < 3e-8 && compared.times < 3e-8, "{compared:?}");
+}
+
+/// The centre of a rod strikes a stop, which turns the slip of its tip: the tip jams and suffers an impact without
+/// collision, bounces and comes to rest on the floor.
+#[test]
+fn a_stop_makes_a_rod_jam() {
+    let mechanism = read("rod_with_stop.mech");
+    // mu and e of the tip, e of the stop, u1, w, g and m.
+    let values = [1.6, 0.3, 0.9, 3.0, 0.05, 9.81, 1.0];
+    let setup = |values: &[f64; 7]| {
+        let [mu, e, stop, _, w, g, m] = *values;
+        let mut mechanism = mechanism.clone();
+        hodograph::Mechanism::set_parameter_values(&mut mechanism, &[m, 1.0, g, w]).unwrap();
+        let surface = |mu: f64, e: f64| Surface { mu, e, law: Law::Poisson };
+        let surfaces = vec![(0, surface(mu, e)), (1, surface(0.0, stop))];
+        (mechanism, Options { surfaces, ..Options::default() })
+    };
+    let (z, q) = (2.0 / 5.0_f64.sqrt(), 2.0_f64.atan());
+    let end = |values: [f64; 7], until: f64| {
+        let (mechanism, options) = setup(&values);
+        let start =
+            State { time: 0.0, coordinates: &[0.0, z, q], speeds: &[values[3], 0.0, 0.0], inputs: &[] };
+        let mut simulation = Simulation::new(&mechanism, &start, options).unwrap();
+        simulation.advance_to(until).unwrap();
+        DVector::from_vec([simulation.coordinates(), simulation.speeds()].concat())
+    };
+    let by = [
+        By::Friction(Some(0)),
+        By::Restitution(Some(0)),
+        By::Restitution(Some(1)),
+        By::Speed(0),
+        By::Parameter(3),
+        By::Parameter(2),
+        By::Parameter(0),
+    ];
+    let (mechanism, options) = setup(&values);
+    let start = State { time: 0.0, coordinates: &[0.0, z, q], speeds: &[3.0, 0.0, 0.0], inputs: &[] };
+    // In flight after the impact without collision; and after the first bounce.
+    let times = [0.09, 0.115];
+    let forwards = differentiate(&mechanism, &start, options.clone(), &by, &times).unwrap();
+    compare(&forwards, &Adjoint::new(&mechanism, &start, options, &by, &times).unwrap());
+    let names: Vec<&str> = forwards.events.iter().map(|event| event.event.kind.name()).collect();
+    assert_eq!(names, ["contact", "collision", "impact_without_collision", "collision"]);
+    assert!(forwards.undefined.is_none(), "{:?}", forwards.undefined);
+    for sample in &forwards.samples {
+        let exact = sample.derivative.as_ref().unwrap();
+        for column in 0..by.len() {
+            let central = |h: f64| {
+                let at = |h: f64| {
+                    let mut values = values;
+                    values[column] += h;
+                    end(values, sample.time)
+                };
+                (at(h) - at(-h)) / (2.0 * h)
+            };
+            let (coarse, fine) = (central(2e-4), central(1e-4));
+            let differences = (&fine * 4.0 - coarse) / 3.0;
+            let off = (exact.column(column) - &differences).amax() / (1.0 + differences.amax());
+            assert!(off < 1e-8, "{column} at {}: {off:e}", sample.time);
+        }
+    }
 }

@@ -27,7 +27,7 @@ from .errors import (
     ParameterError,
     StateError,
 )
-from .gradients import Branch, EventGradient, Fit, MotionGradient, Orbit
+from .gradients import Adjoint, Branch, EventGradient, Fit, MotionGradient, Orbit
 from .mechanism import Derivatives, Linearisation, Mechanism, NumericMechanism, restored
 from .motion import Event, Simulation, SimulationError, Simulations, read_motion
 from .results import Characteristics, ClosedContact, Collision, CollisionDerivative, Hodograph, Impact, ImpactDerivative
@@ -36,7 +36,7 @@ from .validation import Validation
 __version__: str = _native.__version__
 
 __all__ = [
-    "ArgumentError", "Branch", "Characteristics", "ClosedContact", "Collision", "CollisionDerivative", "Contact", "ContactError", "DerivationError",
+    "Adjoint", "ArgumentError", "Branch", "Characteristics", "ClosedContact", "Collision", "CollisionDerivative", "Contact", "ContactError", "DerivationError",
     "Derivatives", "Diagnostic", "Event", "EventGradient", "Fit", "Hodograph", "HodographError", "Impact", "ImpactDerivative", "ImpactError",
     "Linearisation", "Mechanism", "ModelError", "MotionGradient", "NumericMechanism", "Orbit", "ParameterError", "Quantity", "Simulation",
     "SimulationError", "Simulations", "StateError", "Validation", "__version__", "characteristics", "check", "derivative", "hodograph", "load", "load_motion", "solve",

@@ -47,6 +47,15 @@ class MotionGradient:
         return f"<hodograph.MotionGradient by {', '.join(self.by)} at {len(self.time)} times{why}>"
 
 
+class Adjoint(NamedTuple):
+    """A motion at the times asked for, ``time`` (k,), ``q`` (k, n), ``u`` (k, p), and the derivatives of functions of it by v variables, ``by`` (.., v)."""
+
+    time: Floats
+    q: Floats
+    u: Floats
+    by: Floats
+
+
 class Orbit:
     """A periodic motion: ``q``, ``u`` at its beginning, its ``period``, s; ``multipliers``, the greatest first, and whether all are within the unit circle
     (``stable``); ``matrix`` (n + p, n + p): derivatives of the state when it has returned by that at the beginning; ``by`` (n + p, v): by the variables asked

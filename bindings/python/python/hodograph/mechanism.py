@@ -14,7 +14,7 @@ from . import tables
 from .arguments import Column, Floats, Rows, index, number, numbers, optional_number, unknown
 from .description import Contact, Quantity
 from .errors import ArgumentError, HodographError
-from .gradients import Branch, Fit, MotionGradient, Orbit
+from .gradients import Adjoint, Branch, Fit, MotionGradient, Orbit
 from .validation import Validation
 from .motion import Simulation, Simulations
 from .results import Characteristics, ClosedContact, Collision, CollisionDerivative, Impact, ImpactDerivative
@@ -525,6 +525,33 @@ class Mechanism(_native.Mechanism):
         times = [float(value) for value in np.atleast_1d(numbers(at, "at"))]
         found = self._gradient((q, u, inputs, time), list(names), times, choices)
         return MotionGradient(found, names, len(self._names_of("coordinates")))
+
+    def adjoint(
+        self, by: Sequence[str], at: Union[float, Sequence[float], Floats], weights: Union[Floats, Callable[[Floats, Floats], Any]],
+        q: Rows = None, u: Rows = None, inputs: Rows = None, time: Optional[float] = None, *, mu: Optional[float] = None, e: Optional[float] = None,
+        law: Optional[str] = None, tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None,
+        max_step: Optional[float] = None,
+    ) -> Adjoint:
+        """The derivatives of a function of the states at the times ``at`` by the variables ``by``, found backwards, as :class:`Adjoint`: at a cost that does
+        not depend on their number. ``weights`` (k, n + p) is the gradient of the function by the coordinates and speeds at each time, or a function of
+        these, q (k, n) and u (k, p), that returns it; first axes are several functions. All else is as for :meth:`gradient`. A motion without these
+        derivatives raises a :class:`SimulationError`, ``not_differentiable``."""
+        names = (by,) if isinstance(by, str) else tuple(by)
+        choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)
+        times = [float(value) for value in np.atleast_1d(numbers(at, "at"))]
+        n = len(self._names_of("coordinates"))
+        first: list[tuple[int, ...]] = []
+
+        def asked(states: Floats) -> Floats:
+            found = numbers(weights(states[:, :n], states[:, n:]) if callable(weights) else weights, "weights")
+            if found.ndim < 2:
+                found = np.broadcast_to(found, states.shape)
+            first.append(found.shape[:-2])
+            return np.ascontiguousarray(found.reshape(-1, *found.shape[-2:]), dtype=np.float64)
+
+        found = self._adjoint((q, u, inputs, time), list(names), times, asked, choices)
+        states = found["states"]
+        return Adjoint(np.array(times), states[:, :n], states[:, n:], found["by"].reshape(*first[0], len(names)))
 
     def orbit(
         self, q: Rows = None, u: Rows = None, inputs: Rows = None, time: Optional[float] = None, *, period: Optional[float] = None,

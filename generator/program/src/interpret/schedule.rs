@@ -235,7 +235,12 @@ impl Schedule {
                 // What does not depend on a value has no derivative by it, even where its slope is infinite.
                 if by != 0.0 {
                     let operation = code.operation(step);
-                    slopes(operation, numbers[end], |a| numbers[a.index()], |a, slope| cotangents[a.index()] += by * slope);
+                    slopes(
+                        operation,
+                        numbers[end],
+                        |a| numbers[a.index()],
+                        |a, slope| cotangents[a.index()] += by * slope,
+                    );
                 }
             }
         }

@@ -94,7 +94,13 @@ impl Transposed {
 
     /// Adds the derivatives of the sum of the quantities, weighted by `weights`, by the arguments, and by the
     /// constants ([`Transposed::constants`] numbers). `tape` is that of [`Transposed::evaluate`].
-    pub fn transpose(&self, tape: &[f64], weights: &[f64], by: &mut Cotangents<'_>, by_constants: &mut [f64]) {
+    pub fn transpose(
+        &self,
+        tape: &[f64],
+        weights: &[f64],
+        by: &mut Cotangents<'_>,
+        by_constants: &mut [f64],
+    ) {
         let mut cotangents = vec![0.0; tape.len()];
         for (&at, weight) in self.results.iter().zip(weights) {
             cotangents[at] += weight;
@@ -102,7 +108,11 @@ impl Transposed {
         self.schedule.transpose(tape, &mut cotangents);
         by_constants.iter_mut().zip(&cotangents).for_each(|(sum, by)| *sum += by);
         let of_inputs = cotangents.iter().skip(self.constants.len());
-        self.schedule.inputs().iter().zip(of_inputs).for_each(|(&input, &cotangent)| by.add(input, cotangent));
+        self.schedule
+            .inputs()
+            .iter()
+            .zip(of_inputs)
+            .for_each(|(&input, &cotangent)| by.add(input, cotangent));
     }
 
     /// The derivatives by all parameters, `fixed` ones included, from those by the constants.
@@ -135,5 +145,109 @@ impl Transposed {
             }
         }
         parameters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interpret::{Directional, Rates};
+    use crate::program::Derived;
+    use crate::program::passes::contract;
+    use crate::program::passes::lower;
+    use crate::program::passes::testing::{inputs, parameters, random, small, speeds};
+    use hodograph_model::arithmetic::Function;
+
+    /// Every function, of inputs and of parameters alone.
+    fn functions() -> Derived {
+        use Function::*;
+        small(|g| {
+            let (late, early) = (speeds(g), parameters(g));
+            let of = |inputs: &[crate::program::graph::Node], g: &mut crate::program::graph::Graph| {
+                let square = g.power(inputs[0], 2);
+                let one = g.integer(1);
+                let above = g.sum([square, one]);
+                let below = g.power(above, -1);
+                let mut all: Vec<_> = [Sin, Cos, Tan, Atan, Sqrt, Exp, Log, Sinh, Cosh, Tanh, Abs, Sign]
+                    .map(|function| g.call(function, vec![above]))
+                    .to_vec();
+                all.extend([Asin, Acos].map(|function| g.call(function, vec![below])));
+                all.extend([Atan2, Min, Max].map(|function| g.call(function, vec![inputs[1], inputs[2]])));
+                all
+            };
+            let (mut all, constants) = (of(&late, g), of(&early, g));
+            let products: Vec<_> = all.iter().zip(constants).map(|(&a, b)| g.product([a, b])).collect();
+            all.extend(products);
+            all
+        })
+    }
+
+    /// Weights times derivatives along directions are derivatives of the weighted sum along them.
+    #[test]
+    fn the_transpose_agrees_with_derivatives_along_directions() {
+        let derived = (0..40).map(random).chain([functions()]);
+        let (mut compared, mut refused) = (0, 0);
+        for derived in derived {
+            let program = contract::contract(&lower(&derived));
+            let values = inputs();
+            let constants = Constants::new(&program, &values.parameters);
+            let directions = 3;
+            let mut bits = 1_u64;
+            let mut number = || {
+                bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+            };
+            let count = [values.parameters.len(), values.coordinates.len(), values.speeds.len()];
+            let [by_parameters, by_coordinates, by_speeds] =
+                count.map(|count| (0..count * directions).map(|_| number()).collect::<Vec<f64>>());
+            let arguments = Arguments {
+                coordinates: &values.coordinates,
+                speeds: &values.speeds,
+                ..Arguments::default()
+            };
+            let along = Directional::new(
+                &program,
+                &constants,
+                (&values.parameters, &by_parameters),
+                directions,
+                &[Quantity::Forcing],
+            );
+            let rates = Rates { coordinates: &by_coordinates, speeds: &by_speeds, ..Rates::default() };
+            let (mut results, mut by) = (Vec::new(), Vec::new());
+            if along.evaluate(&arguments, &rates, &mut results, &mut by).is_err() {
+                refused += 1;
+                continue;
+            }
+            compared += 1;
+            let routine = Transposed::new(&program, &constants, count[0], &[Quantity::Forcing]);
+            let mut tape = Vec::new();
+            assert_eq!(routine.evaluate(&arguments, &mut tape).unwrap(), results);
+            let weights: Vec<f64> = results.iter().map(|_| number()).collect();
+            let (mut of_coordinates, mut of_speeds) = (vec![0.0; count[1]], vec![0.0; count[2]]);
+            let mut of_constants = vec![0.0; routine.constants()];
+            let mut cotangents = Cotangents {
+                coordinates: &mut of_coordinates,
+                speeds: &mut of_speeds,
+                ..Cotangents::default()
+            };
+            routine.transpose(&tape, &weights, &mut cotangents, &mut of_constants);
+            let of_parameters = routine.by_parameters(&of_constants);
+            for d in 0..directions {
+                let terms = |of: &[f64], by: &[f64]| -> Vec<f64> {
+                    of.iter().enumerate().map(|(index, of)| of * by[index * directions + d]).collect()
+                };
+                let forwards = terms(&weights, &by);
+                let backwards = [
+                    terms(&of_parameters, &by_parameters),
+                    terms(&of_coordinates, &by_coordinates),
+                    terms(&of_speeds, &by_speeds),
+                ]
+                .concat();
+                let size: f64 = forwards.iter().chain(&backwards).map(|term| term.abs()).sum();
+                let off = forwards.iter().sum::<f64>() - backwards.iter().sum::<f64>();
+                assert!(off.abs() <= 1e-11 * size, "{off:e} of {size:e}");
+            }
+        }
+        assert!(compared > 30 && refused < 11, "{compared} {refused}");
     }
 }

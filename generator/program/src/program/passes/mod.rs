@@ -7,7 +7,7 @@
 mod adjoint;
 mod collect;
 mod common_subexpressions;
-mod contract;
+pub(crate) mod contract;
 mod dead_code;
 mod equal;
 mod factor;
@@ -26,7 +26,7 @@ mod vanishing;
 
 use super::derivation::Derived;
 use super::inputs::Inputs;
-use super::lower::lower;
+pub(crate) use super::lower::lower;
 use super::solve::solved;
 use super::straight_line::Program;
 
