@@ -71,6 +71,7 @@ def main():
                 subprocess.run([sys.executable, Path(__file__).parent / "identify.py", "cube", which, "--quick", folder], check=True)
                 rows = (Path(folder) / f"cube_{which}_errors.csv").read_text().splitlines()[1:]
                 check(len(rows) == 6 and all(float(row.split(",")[1]) < 5 for row in rows), f"errors of {which}: {rows}")
+        subprocess.run([sys.executable, Path(__file__).parent / "impacts.py", "--check"], check=True)
         subprocess.run([sys.executable, Path(__file__).parent / "outcomes.py", "cube", "--quick", folder], check=True)
         rows = (Path(folder) / "cube_outcomes.csv").read_text().splitlines()[1:]
         check(len(rows) == 6 and all(row.endswith(",0") for row in rows), f"drawn outcomes: {rows}")

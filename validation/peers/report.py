@@ -104,6 +104,41 @@ def outcomes(name):
     ]
 
 
+LAWS_OF_IMPACTS = {
+    "coulomb": "Coulomb and Poisson, mu and e",
+    "speed": "the same, e falls with the speed to the power 1/4",
+    "springs": "springs in the contact, that e, ratio 0.8",
+    "free springs": "the same, the ratio is a third constant",
+    "each": "Coulomb and Poisson with the best mu and e of each impact",
+}
+
+
+def impacts():
+    """What laws leave of clean impacts."""
+    with open(RESULTS / "elbow_impacts.csv") as file:
+        rows = list(csv.DictReader(file))
+    constants = json.loads((RESULTS / "elbow_impacts.json").read_text())
+    half = np.array([int(row["toss"]) % 2 for row in rows])
+    column = lambda name: np.array([float(row[name]) for row in rows])
+    percent = lambda values: f"{100 * values.mean():.1f}"
+    lines = [
+        f"{(half == 0).sum()} impacts of tosses with even numbers, from which the constants are, and {(half == 1).sum()} others, in per cent of the energy of the change of velocity:",
+        "",
+        "| law | constants | first half | second half | its median |",
+        "| --- | --- | --- | --- | --- |",
+        f"| any impulse at the corner | | {percent(column('any impulse')[half == 0])} | {percent(column('any impulse')[half == 1])} | {100 * np.median(column('any impulse')[half == 1]):.1f} |",
+    ]
+    for name, title in LAWS_OF_IMPACTS.items():
+        values = column(name)
+        judged = values[half == 1]
+        given = ", ".join(f"{key} {value:.2f}" for key, value in constants.get(name, {}).items())
+        error = judged.std(ddof=1) / np.sqrt(len(judged))
+        lines.append(f"| {title} | {given} | {percent(values[half == 0])} | {percent(judged)} ± {100 * error:.1f} | {100 * np.median(judged):.1f} |")
+    quartiles = lambda name: " to ".join(f"{value:.2f}" for value in np.percentile(column(name), [25, 75]))
+    lines += ["", f"The tangential impulse is {quartiles('ratio')} of the normal one (quartiles), e {quartiles('e')}."]
+    return lines
+
+
 def picture(name):
     import matplotlib
 
@@ -141,6 +176,9 @@ def main():
     begin, end = "<!-- outcomes of the cube -->\n", "<!-- end of the outcomes of the cube -->\n"
     head, rest = text.split(begin)
     text = head + begin + "\n" + "\n".join(outcomes("cube")) + "\n\n" + end + rest.split(end)[1]
+    begin, end = "<!-- impacts of the elbow -->\n", "<!-- end of the impacts of the elbow -->\n"
+    head, rest = text.split(begin)
+    text = head + begin + "\n" + "\n".join(impacts()) + "\n\n" + end + rest.split(end)[1]
     for name in TARGETS:
         begin, end = f"<!-- results of the {name} -->\n", f"<!-- end of the results of the {name} -->\n"
         if begin not in text:

@@ -111,3 +111,28 @@ fn effort_is_equal() {
         }
     }
 }
+
+/// What laws leave of the clean impacts of the second half.
+#[test]
+fn impacts_of_the_page_are_those_of_the_results() {
+    let page = std::fs::read_to_string(root().join("../docs/validation.md")).expect("docs/validation.md");
+    let text = std::fs::read_to_string(root().join("results/elbow_impacts.csv")).expect("results");
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    assert!(rows.len() > 80);
+    for (name, title) in [
+        ("coulomb", "Coulomb and Poisson, mu and e"),
+        ("speed", "the same, e falls with the speed to the power 1/4"),
+        ("springs", "springs in the contact, that e, ratio 0.8"),
+        ("free springs", "the same, the ratio is a third constant"),
+    ] {
+        let column = names.iter().position(|other| *other == name).expect("a law");
+        let judged: Vec<f64> = rows.iter().filter(|row| row[0] % 2.0 == 1.0).map(|row| row[column]).collect();
+        let (mean, error, median) = summary(&judged);
+        let expected = format!("| {:.1} ± {:.1} | {:.1} |", 100.0 * mean, 100.0 * error, 100.0 * median);
+        let line = page.lines().find(|line| line.contains(title)).expect("a line for each law");
+        assert!(line.ends_with(&expected), "{line} {expected}");
+    }
+}
