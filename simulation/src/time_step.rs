@@ -407,7 +407,7 @@ impl Transition<'_> {
             // Two closed contacts may have coincided up to here: the one that is at its end makes way for the other.
             Some(Failure::NoForces) => match self.at_its_end()? {
                 Some(contact) => self.leave(contact),
-                None => Err(self.failure(Failure::NoForces)),
+                None => self.decide_again(),
             },
             Some(failure) => Err(self.failure(failure)),
             None => match (self.singular_here(&self.closed()), self.turns_into_jam()?) {
@@ -416,6 +416,20 @@ impl Transition<'_> {
                 (None, None) => Err(self.error(None, ErrorKind::Stalled)),
             },
         }
+    }
+
+    /// Decides modes anew where the closed contacts have no forces in theirs, though nothing has ended them; the error
+    /// `no_forces` if there are no others.
+    fn decide_again(&mut self) -> Result<(), SimulationError> {
+        let (before, events) = (self.front.clone(), self.events.len());
+        let was = before.phases.clone();
+        let closed: Vec<usize> = (0..was.len()).filter(|&contact| was[contact].is_closed()).collect();
+        if self.decide(&closed, &was).is_ok() && self.front.phases != was {
+            return self.crowded(before.t);
+        }
+        self.front = before;
+        self.events.truncate(events);
+        Err(self.failure(Failure::NoForces))
     }
 
     /// Whether the slip of sliding contacts stays in its half plane.
