@@ -3,7 +3,7 @@
 use hodograph::{Cause, ComponentKind, Contacts, ImpactError, State, StateError, Surface};
 
 use crate::pair::Pair;
-use crate::{ContactLaw, Drive, ErrorKind, Options, SimulationError};
+use crate::{ContactLaw, Drive, ErrorKind, Options, Samples, SimulationError};
 
 /// The smallest tolerance: with a smaller one rounding exceeds the tolerance of every step.
 const LEAST_TOLERANCE: f64 = 1e-16;
@@ -36,10 +36,20 @@ pub(crate) fn check(
     if !options.breaks.iter().all(|time| time.is_finite()) || !options.breaks.windows(2).all(rising) {
         return bad("the times at which inputs jump must be finite and rise".to_owned());
     }
-    if let Drive::Sampled { period, .. } = &options.drive
+    if let Drive::Sampled { period, .. } | Drive::Table(Samples { period, .. }) = &options.drive
         && !(period.is_finite() && *period > 0.0)
     {
         return bad(format!("the sampling time is {period}: it must be positive"));
+    }
+    if let Drive::Table(Samples { values, .. }) = &options.drive {
+        let inputs = mechanism.count(ComponentKind::Input);
+        if values.is_empty() {
+            return bad("the table of sampled inputs is empty: it must have one row at least".to_owned());
+        }
+        if let Some(row) = values.iter().position(|values| values.len() != inputs) {
+            let have = values[row].len();
+            return bad(format!("sample {row} of the inputs has {have} numbers: it must have {inputs}"));
+        }
     }
     let argument = |contact, cause, message| Err(error(contact, ErrorKind::Argument { cause, message }));
     for (kind, numbers) in [

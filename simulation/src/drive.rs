@@ -43,6 +43,24 @@ pub enum Drive {
         /// the law of control
         controller: Box<dyn Controller>,
     },
+    /// Values that are given beforehand, constant in between.
+    Table(Samples),
+}
+
+/// Inputs at times k T after the start, k = 0, 1, ..; each remains until the next one, the last one to the end.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    /// T, s
+    pub period: f64,
+    /// for each k a number for every named input; one k at least
+    pub values: Arc<[Vec<f64>]>,
+}
+
+impl Samples {
+    /// The inputs from k T on.
+    pub(crate) fn from(&self, k: usize) -> &[f64] {
+        self.values.get(k).or(self.values.last()).map_or(&[], |values| &values[..])
+    }
 }
 
 impl Clone for Drive {
@@ -53,6 +71,7 @@ impl Clone for Drive {
             Self::Sampled { period, controller } => {
                 Self::Sampled { period: *period, controller: controller.boxed_clone() }
             }
+            Self::Table(samples) => Self::Table(samples.clone()),
         }
     }
 }
@@ -63,6 +82,9 @@ impl fmt::Debug for Drive {
             Self::Held => out.write_str("Held"),
             Self::Continuous(_) => out.write_str("Continuous"),
             Self::Sampled { period, .. } => write!(out, "Sampled({period} s)"),
+            Self::Table(samples) => {
+                write!(out, "Table({} s, {} samples)", samples.period, samples.values.len())
+            }
         }
     }
 }

@@ -95,7 +95,7 @@ pub use crate::exchange::Saved;
 pub use crate::{
     contact_law::{ContactLaw, Restitution, Sliding, SpeedFunction},
     drift::close_loops,
-    drive::{Controller, Drive, InputFunction},
+    drive::{Controller, Drive, InputFunction, Samples},
     energy::EnergyAccount,
     error::{ErrorKind, SimulationError},
     event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},

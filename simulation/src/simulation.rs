@@ -95,7 +95,7 @@ impl<'m> Simulation<'m> {
         })?;
         // A torque has no gap.
         surfaces.resize(surfaces.len() + torques.len(), None);
-        let sampled = matches!(options.drive, Drive::Sampled { .. });
+        let sampled = matches!(options.drive, Drive::Sampled { .. } | Drive::Table(_));
         let angles = Angles::of(mechanism);
         let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, &angles, state));
         front.greatest = mechanism.kinetic_energy(state).unwrap_or(0.0);
@@ -193,11 +193,19 @@ impl<'m> Simulation<'m> {
         }
         let (n, p) =
             (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
-        let Drive::Sampled { period, controller } = &mut self.options.drive else { return Ok(None) };
-        let mut inputs = front.held.clone();
-        controller.control(front.t, &front.y[..n], &front.y[n..n + p], &mut inputs);
+        let (period, inputs) = match &mut self.options.drive {
+            Drive::Sampled { period, controller } => {
+                let mut inputs = front.held.clone();
+                controller.control(front.t, &front.y[..n], &front.y[n..n + p], &mut inputs);
+                (*period, inputs)
+            }
+            Drive::Table(samples) => (samples.period, samples.from(front.samples as usize).to_vec()),
+            Drive::Held | Drive::Continuous(_) => return Ok(None),
+        };
         front.samples += 1;
-        front.next_sample = Some(self.start + *period * front.samples as f64);
+        // After its last row a table has no more.
+        let ended = matches!(&self.options.drive, Drive::Table(samples) if front.samples >= samples.values.len() as u64);
+        front.next_sample = (!ended).then_some(self.start + period * front.samples as f64);
         if let Some(bad) = inputs.iter().position(|value| !value.is_finite()) {
             let transition = self.transition();
             let message = transition.motion(&[]).bad_input(bad, inputs[bad]);

@@ -8,7 +8,7 @@ use hodograph::{Cause, ComponentKind, Contacts, State};
 use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
     ContactLaw, ContactPhase, Drive, EnergyAccount, Event, EventFunction, EventKind, ImpactsAtOnce,
-    InputFunction, Options, Progress, Simulation, SimulationError,
+    InputFunction, Options, Progress, Samples, Simulation, SimulationError,
 };
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyUserWarning;
@@ -61,6 +61,9 @@ pub struct Choices {
     /// the sampling time of `control`, s; none: it is evaluated at every time
     #[pyo3(item)]
     period: Option<f64>,
+    /// inputs in a table: the sampling time, s, and the values of each sample
+    #[pyo3(item)]
+    samples: Option<(f64, Vec<Vec<f64>>)>,
     /// functions of time, coordinates and speeds whose zeros are events of these names
     #[pyo3(item)]
     events: Vec<(String, Py<PyAny>)>,
@@ -230,6 +233,9 @@ pub fn options(
         events: choices.functions(raised),
         ..Options::default()
     };
+    if let Some((period, values)) = choices.samples {
+        options.drive = Drive::Table(Samples { period, values: values.into() });
+    }
     if let Some(control) = choices.control {
         let function = controlled(control, raised);
         options.drive = match choices.period {

@@ -218,6 +218,32 @@ def test_gradients_backwards_are_those_forwards():
     assert raised.value.kind == "not_differentiable"
 
 
+def test_gradients_by_samples_of_inputs():
+    hopper = hodograph.load(ROOT / "simulation/models/hopper.mech")
+    values = np.array([[0.3, 0.6], [-0.5, 0.605], [0.8, 0.61], [0.1, 0.6]])
+    by = ["tau[0]", "rest[1]", "tau", "rest[3]"]
+    start = dict(q=[0, 0.68, 0.05, -0.04, 0.6], u=[0.2, 0, 0.1, 0, 0], mu=0.9, e=0.0, law="newton")
+    def at(values):
+        found = hopper.gradient(by, 0.19, **start, samples=(0.05, values))
+        assert found.undefined is None
+        return found
+    found = at(values)
+    every = np.concatenate([found.q_by[0], found.u_by[0]])
+    for column, (rows, input) in enumerate([(0, 0), (1, 1), (slice(None), 0), (3, 1)]):
+        h = 1e-6
+        def end(h, rows=rows, input=input):
+            changed = values.copy()
+            changed[rows, input] += h
+            other = at(changed)
+            return np.concatenate([other.q[0], other.u[0]])
+        np.testing.assert_allclose(every[:, column], (end(h) - end(-h)) / (2 * h), rtol=1e-4, atol=1e-4 * abs(every[:, column]).max())
+    weights = np.arange(10.0)
+    backwards = hopper.adjoint(by, 0.19, weights, **start, samples=(0.05, values))
+    np.testing.assert_allclose(backwards.by, weights @ every, rtol=1e-8, atol=1e-8 * abs(every).max())
+    with pytest.raises(hodograph.ArgumentError, match="there is no sample 4"):
+        hopper.gradient("tau[4]", 0.1, **start, samples=(0.05, values))
+
+
 def test_orbits_and_branches_of_the_bouncing_ball_on_a_plate():
     m = hodograph.load(ROOT / "simulation/gradients/tests/models/ball_on_plate.mech")
     a, g, w, e = 0.002, 9.81, 60.0, 0.7

@@ -243,7 +243,8 @@ impl TransposedSystem for Rates<'_, '_> {
     type Error = Reason;
 
     fn rates(&mut self, stage: usize, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Reason> {
-        let place = Place { time: t, state: y, inputs: &self.part.inputs };
+        let place =
+            Place { time: t, state: y, inputs: &self.part.inputs, row: self.field.row(self.part.start) };
         let tape = self.field.mode_rates(&self.modes, &place)?;
         rates.copy_from_slice(&tape.rates);
         self.tapes.truncate(stage);

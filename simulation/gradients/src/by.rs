@@ -14,8 +14,15 @@ pub enum By {
     Speed(usize),
     /// a parameter of the model, by its index among those that are not `fixed`
     Parameter(usize),
-    /// a named input, which is constant
+    /// a named input, which is constant; of a table of samples all of its values together
     Input(usize),
+    /// a value in a table of samples ([`hodograph_simulation::Drive::Table`])
+    Sample {
+        /// index of the named input
+        input: usize,
+        /// index of the row in the table
+        row: usize,
+    },
     /// mu of a contact, or of all contacts together
     Friction(Option<usize>),
     /// e of a contact, or of all contacts together
@@ -23,8 +30,8 @@ pub enum By {
 }
 
 impl By {
-    /// The variable with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, or the name of a coordinate, speed,
-    /// parameter or input. If a coordinate or parameter of the model is called `mu` or `e`, the name means
+    /// The variable with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, the name of a coordinate, speed,
+    /// parameter or input, or `INPUT[ROW]`, a sample of an input. If a coordinate or parameter of the model is called `mu` or `e`, the name means
     /// that.
     ///
     /// # Errors
@@ -40,6 +47,14 @@ impl By {
         ];
         let named = |(kind, by): Kind| mechanism.index(kind, name).map(by);
         if let Some(by) = kinds.into_iter().find_map(named) {
+            return Ok(by);
+        }
+        let sample = || {
+            let (input, row) = name.strip_suffix(']')?.split_once('[')?;
+            let input = mechanism.index(ComponentKind::Input, input)?;
+            Some(By::Sample { input, row: row.parse().ok()? })
+        };
+        if let Some(by) = sample() {
             return Ok(by);
         }
         let contact = |contact: &str| mechanism.index(ComponentKind::Contact, contact);
@@ -69,6 +84,7 @@ impl By {
             By::Speed(index) => of(ComponentKind::Speed, index).to_owned(),
             By::Parameter(index) => of(ComponentKind::Parameter, index).to_owned(),
             By::Input(index) => of(ComponentKind::Input, index).to_owned(),
+            By::Sample { input, row } => format!("{}[{row}]", of(ComponentKind::Input, input)),
             By::Friction(None) => "mu".to_owned(),
             By::Restitution(None) => "e".to_owned(),
             By::Friction(Some(contact)) => format!("mu.{}", of(ComponentKind::Contact, contact)),

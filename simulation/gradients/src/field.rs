@@ -6,6 +6,7 @@
 //!
 //! Theory: docs/theory.md, section 19.1.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -28,6 +29,8 @@ pub(crate) struct At<'a> {
     /// derivatives of the time (k); empty if they are zero
     pub time_by: &'a [f64],
     pub inputs: &'a [f64],
+    /// row of the table of sampled inputs
+    pub row: usize,
 }
 
 /// Variables that change together, with their rates.
@@ -44,8 +47,19 @@ pub(crate) struct Field<'m> {
     /// number of directions, of which the last is the motion itself
     pub k: usize,
     by_parameters: Vec<f64>,
+    /// of inputs that do not change, or all of whose samples change
     by_inputs: Vec<f64>,
+    sampling: Option<Sampling>,
     routines: RefCell<BTreeMap<RoutineKey, Rc<Directional>>>,
+}
+
+/// The times at which rows of a table of inputs begin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sampling {
+    /// s
+    pub start: f64,
+    pub period: f64,
+    pub rows: usize,
 }
 
 /// The key of a routine that evaluates equations.
@@ -77,6 +91,7 @@ impl<'m> Field<'m> {
         mechanism: &'m InterpretedMechanism,
         directions_of: Vec<Direction>,
         surfaces: Vec<(usize, Surface<f64>)>,
+        sampling: Option<Sampling>,
     ) -> Self {
         let k = directions_of.len() + 1;
         let model = mechanism.model();
@@ -102,6 +117,7 @@ impl<'m> Field<'m> {
             k,
             by_parameters,
             by_inputs,
+            sampling,
             routines: RefCell::default(),
         }
     }
@@ -124,6 +140,34 @@ impl<'m> Field<'m> {
     fn rate(&self, direction: usize, is: impl Fn(By) -> bool) -> f64 {
         let variables = self.directions_of.get(direction).into_iter().flatten();
         variables.filter(|(by, _)| is(*by)).map(|(_, rate)| rate).sum()
+    }
+
+    /// The row of the table of sampled inputs from a time on; 0 without a table.
+    pub fn row(&self, time: f64) -> usize {
+        let Some(Sampling { start, period, rows }) = self.sampling else { return 0 };
+        // Samples begin at such times up to rounding.
+        let since = ((time - start) / period * (1.0 + 1e-12) + 1e-9).max(0.0);
+        (since as usize).min(rows.saturating_sub(1))
+    }
+
+    /// Number of rows of the table of sampled inputs; 1 without a table.
+    pub fn rows(&self) -> usize {
+        self.sampling.map_or(1, |sampling| sampling.rows)
+    }
+
+    /// Derivatives of the inputs in a row of the table of samples.
+    fn by_inputs(&self, row: usize) -> Cow<'_, [f64]> {
+        let mut by = Cow::Borrowed(&self.by_inputs[..]);
+        for (direction, variables) in self.directions_of.iter().enumerate() {
+            for &(variable, rate) in variables {
+                if let By::Sample { input, row: own } = variable
+                    && own == row
+                {
+                    by.to_mut()[input * self.k + direction] += rate;
+                }
+            }
+        }
+        by
     }
 
     fn routine(&self, key: RoutineKey) -> Rc<Directional> {
@@ -153,7 +197,8 @@ impl<'m> Field<'m> {
             accelerations: &[],
             tangent: &[],
         };
-        let rates = Rates { time: at.time_by, coordinates: by_q, speeds: by_u, inputs: &self.by_inputs };
+        let inputs = self.by_inputs(at.row);
+        let rates = Rates { time: at.time_by, coordinates: by_q, speeds: by_u, inputs: &inputs };
         let (mut values, mut derivatives) = (Vec::new(), Vec::new());
         let done = self.routine(key).evaluate(&arguments, &rates, &mut values, &mut derivatives);
         done.map_err(failed)?;

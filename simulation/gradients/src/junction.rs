@@ -75,16 +75,6 @@ pub(crate) const ARGUMENTS: usize = 11;
 /// Rows and columns of the entries of the reduced matrix among these arguments.
 pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// The state at the end of a part, with its derivatives.
-fn at_end<'a>(part: &'a SmoothPart, state: &'a [f64], by: &'a [f64], time_by: &'a [f64]) -> At<'a> {
-    At { time: part.end, state, by, time_by, inputs: &part.inputs }
-}
-
-/// The state at the start of a part, with its derivatives.
-pub(crate) fn at_start<'a>(part: &'a SmoothPart, by: &'a [f64]) -> At<'a> {
-    At { time: part.start, state: &part.first, by, time_by: &[], inputs: &part.inputs }
-}
-
 /// The modes during a part.
 pub(crate) fn modes(part: &SmoothPart) -> Vec<Mode> {
     let mode = |closed: &hodograph_simulation::ClosedPart| Mode {
@@ -95,6 +85,23 @@ pub(crate) fn modes(part: &SmoothPart) -> Vec<Mode> {
 }
 
 impl Field<'_> {
+    /// The state at the start of a part, with its derivatives.
+    pub fn at_start<'a>(&self, part: &'a SmoothPart, by: &'a [f64]) -> At<'a> {
+        let row = self.row(part.start);
+        At { time: part.start, state: &part.first, by, time_by: &[], inputs: &part.inputs, row }
+    }
+
+    /// The state at the end of a part, with its derivatives.
+    fn at_end<'a>(
+        &self,
+        part: &'a SmoothPart,
+        state: &'a [f64],
+        by: &'a [f64],
+        time_by: &'a [f64],
+    ) -> At<'a> {
+        At { time: part.end, state, by, time_by, inputs: &part.inputs, row: self.row(part.start) }
+    }
+
     /// Carries derivatives through the events at the end of a part. `by` are the derivatives of the state
     /// just before them, at the fixed time; `modes` are the modes during the part; `next` is the following
     /// part; `since` is the time of the previous events.
@@ -113,7 +120,8 @@ impl Field<'_> {
                 return Err((event.contact, Reason::SeveralModes));
             }
         }
-        let before = self.mode_rates(modes, &at_end(part, &part.last, by, &[])).map_err(|why| (None, why))?;
+        let before =
+            self.mode_rates(modes, &self.at_end(part, &part.last, by, &[])).map_err(|why| (None, why))?;
         // The last direction is time.
         let mut flow = vec![0.0; k];
         flow[k - 1] = 1.0;
@@ -121,7 +129,7 @@ impl Field<'_> {
         for (row, rate) in along.chunks_exact_mut(k).zip(&before.rates) {
             row[k - 1] = *rate;
         }
-        let slopes = self.guard(part, modes, &at_end(part, &part.last, &along, &flow), since)?;
+        let slopes = self.guard(part, modes, &self.at_end(part, &part.last, &along, &flow), since)?;
         let mut time: Vec<f64> = slopes.iter().map(|slope| -slope / slopes[k - 1]).collect();
         time[k - 1] = 0.0;
         let (mut there, mut sizes) = (by.to_vec(), by.to_vec());
@@ -133,7 +141,7 @@ impl Field<'_> {
             }
         }
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
-            self.check_stop(stopped, &at_end(part, &part.last, &there, &time), &sizes)?;
+            self.check_stop(stopped, &self.at_end(part, &part.last, &there, &time), &sizes)?;
         }
         let (mut now, mut after) = (there.clone(), Vec::with_capacity(events.len()));
         let mut collisions = Vec::new();
@@ -144,7 +152,7 @@ impl Field<'_> {
                 let contact = event.contact.unwrap_or(0);
                 let mut state = part.last[..self.n].to_vec();
                 state.extend_from_slice(&struck.speeds_before);
-                let found = self.collide(contact, struck, event, &at_end(part, &state, &now, &time));
+                let found = self.collide(contact, struck, event, &self.at_end(part, &state, &now, &time));
                 let (speeds_by, struck) = found.map_err(|why| (Some(contact), why))?;
                 now[self.n * k..].copy_from_slice(&speeds_by);
                 collisions.push(struck);
@@ -158,7 +166,7 @@ impl Field<'_> {
             return Err((None, Reason::Inaccurate(off)));
         }
         let modes_after = self::modes(next);
-        let going = self.mode_rates(&modes_after, &at_start(next, &now)).map_err(|why| (None, why))?;
+        let going = self.mode_rates(&modes_after, &self.at_start(next, &now)).map_err(|why| (None, why))?;
         for ((row, size), rate) in now.chunks_exact_mut(k).zip(sizes.chunks_exact_mut(k)).zip(&going.rates) {
             for ((by, size), time) in row.iter_mut().zip(size).zip(&time) {
                 *by -= rate * time;
@@ -166,7 +174,7 @@ impl Field<'_> {
             }
         }
         let apart =
-            self.separation(&modes_after, &at_start(next, &now), &sizes).map_err(|why| (None, why))?;
+            self.separation(&modes_after, &self.at_start(next, &now), &sizes).map_err(|why| (None, why))?;
         if let Some((contact, _, left)) = apart
             && left > TRANSVERSE_SLIP
         {

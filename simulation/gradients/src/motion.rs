@@ -13,8 +13,8 @@ use hodograph_simulation::{
 };
 use nalgebra::{DMatrix, DVector};
 
-use crate::field::{At, Direction, Field};
-use crate::junction::{EventDerivatives, Junction, NonDifferentiable, at_start, modes};
+use crate::field::{At, Direction, Field, Sampling};
+use crate::junction::{EventDerivatives, Junction, NonDifferentiable, modes};
 use crate::modes::{Mode, ModeKind};
 use crate::{By, Reason, Undefined};
 
@@ -151,6 +151,7 @@ pub(crate) struct Followed {
     pub start: f64,
     pub end: f64,
     pub surfaces: Vec<(usize, Surface<f64>)>,
+    pub sampling: Option<Sampling>,
     pub tolerances: Tolerances,
 }
 
@@ -163,7 +164,13 @@ impl Followed {
         by: &[By],
         times: &[f64],
     ) -> Result<Self, GradientError> {
-        check_request(mechanism, start, by, times)?;
+        check_request(mechanism, start, &options, by, times)?;
+        let sampling = match &options.drive {
+            Drive::Table(table) => {
+                Some(Sampling { start: start.time, period: table.period, rows: table.values.len() })
+            }
+            _ => None,
+        };
         let surfaces = supported(mechanism, start, &options)?;
         let tolerances =
             Tolerances { relative: options.relative_tolerance, absolute: options.absolute_tolerance };
@@ -183,13 +190,14 @@ impl Followed {
             parts.extend(simulation.take_parts());
         }
         events.retain(|event| event.time <= end);
-        Ok(Followed { parts, events, samples, start: start.time, end, surfaces, tolerances })
+        Ok(Followed { parts, events, samples, start: start.time, end, surfaces, sampling, tolerances })
     }
 }
 
 fn check_request(
     mechanism: &InterpretedMechanism,
     start: &State<'_>,
+    options: &Options,
     by: &[By],
     times: &[f64],
 ) -> Result<(), GradientError> {
@@ -210,6 +218,16 @@ fn check_request(
             By::Speed(index) => (ComponentKind::Speed, index),
             By::Parameter(index) => (ComponentKind::Parameter, index),
             By::Input(index) => (ComponentKind::Input, index),
+            By::Sample { input, row } => {
+                let rows = match &options.drive {
+                    Drive::Table(table) => table.values.len(),
+                    _ => 0,
+                };
+                if row >= rows {
+                    return bad(format!("there is no sample {row} of the inputs: there are {rows}"));
+                }
+                (ComponentKind::Input, input)
+            }
             By::Friction(contact) | By::Restitution(contact) => {
                 (ComponentKind::Contact, contact.unwrap_or(0))
             }
@@ -228,8 +246,9 @@ fn supported(
     options: &Options,
 ) -> Result<Vec<(usize, Surface<f64>)>, GradientError> {
     let no = |what: String| Err(GradientError::NotSupported(what));
-    if !matches!(options.drive, Drive::Held) || !options.breaks.is_empty() {
-        return no("its inputs are driven; only inputs that are held have derivatives".to_owned());
+    if !matches!(options.drive, Drive::Held | Drive::Table(_)) || !options.breaks.is_empty() {
+        return no("its inputs are functions or come from a controller; only inputs that are held, or a table of samples, have derivatives"
+            .to_owned());
     }
     if mechanism.count(ComponentKind::DependentCoordinate) > 0 {
         return no("the mechanism has closed loops (dependent coordinates)".to_owned());
@@ -343,7 +362,7 @@ impl<'m> Propagation<'m> {
     ) -> Self {
         Propagation {
             by: seeds(mechanism, start, &directions),
-            field: Field::new(mechanism, directions, followed.surfaces.clone()),
+            field: Field::new(mechanism, directions, followed.surfaces.clone(), followed.sampling),
             tolerances: followed.tolerances.clone(),
             since: followed.start,
             motion: MotionGradient {
@@ -421,13 +440,13 @@ impl<'m> Propagation<'m> {
         let Some(first) = parts.first() else { return Ok(()) };
         let mut sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
         if how == Start::Held {
-            let held = self.field.project(&modes(first), &at_start(first, &self.by));
+            let held = self.field.project(&modes(first), &self.field.at_start(first, &self.by));
             self.by = held.map_err(|why| (None, why))?;
             sizes.iter_mut().zip(&self.by).for_each(|(size, by)| *size += by.abs());
         }
         match self
             .field
-            .separation(&modes(first), &at_start(first, &self.by), &sizes)
+            .separation(&modes(first), &self.field.at_start(first, &self.by), &sizes)
             .map_err(|why| (None, why))?
         {
             Some((contact, direction, left)) if left > MAX_SEPARATION => {
@@ -539,10 +558,11 @@ impl<'m> Propagation<'m> {
         mut pieces: Option<&mut Vec<Piece>>,
     ) -> Result<(), Reason> {
         let count = part.first.len();
+        let row = self.field.row(part.start);
         let mut failed = None;
         let mut rates = |time: f64, y: &[f64], rates: &mut [f64]| {
             let (state, by) = y.split_at(count);
-            let at = At { time, state, by, time_by: &[], inputs: &part.inputs };
+            let at = At { time, state, by, time_by: &[], inputs: &part.inputs, row };
             match self.field.mode_rates(modes, &at) {
                 Ok(mode_rates) => {
                     rates[..count].copy_from_slice(&mode_rates.rates);
@@ -574,7 +594,7 @@ impl<'m> Propagation<'m> {
     /// The last nanoseconds of slip, along a straight line.
     fn straight(&self, part: &SmoothPart, modes: &[Mode], time: f64, y: &mut [f64]) -> Result<(), Reason> {
         let count = part.first.len();
-        let mode_rates = self.field.mode_rates(modes, &at_start(part, &y[count..]))?;
+        let mode_rates = self.field.mode_rates(modes, &self.field.at_start(part, &y[count..]))?;
         let rates = mode_rates.rates.iter().chain(&mode_rates.rates_by);
         let rates: Vec<f64> = rates.copied().collect();
         y.iter_mut().zip(rates).for_each(|(value, rate)| *value += time * rate);
@@ -638,7 +658,7 @@ impl<'m> Propagation<'m> {
         let mut modes = modes(part);
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
             // Slip is zero at its end, so it takes the direction shortly before.
-            let at = at_start(part, &self.by);
+            let at = self.field.at_start(part, &self.by);
             let mode_rates = self.field.mode_rates(&modes, &at).map_err(|why| (None, why))?;
             for (mode, direction) in modes.iter_mut().zip(mode_rates.directions) {
                 if let (true, Some(along)) = (stopped.contains(&mode.contact), direction) {

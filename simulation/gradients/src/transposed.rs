@@ -22,13 +22,16 @@ pub(crate) struct Place<'a> {
     /// coordinates and independent speeds
     pub state: &'a [f64],
     pub inputs: &'a [f64],
+    /// row of the table of sampled inputs
+    pub row: usize,
 }
 
 /// The equations of a mechanism with their transposes, and the sums of the derivatives by all but the state.
 pub(crate) struct TransposedField<'f> {
     field: &'f Field<'f>,
     routines: BTreeMap<RoutineKey, OfRoutine>,
-    by_inputs: Vec<f64>,
+    /// for each row of the table of sampled inputs the derivatives by its values
+    by_inputs: Vec<Vec<f64>>,
     by_friction: Vec<f64>,
     by_restitution: Vec<f64>,
 }
@@ -37,7 +40,8 @@ pub(crate) struct TransposedField<'f> {
 pub(crate) struct Totals {
     /// those that are not fixed
     parameters: Vec<f64>,
-    inputs: Vec<f64>,
+    /// for each row of the table of sampled inputs
+    inputs: Vec<Vec<f64>>,
     /// by mu and e of each contact
     friction: Vec<f64>,
     restitution: Vec<f64>,
@@ -53,7 +57,10 @@ impl Totals {
         match variable {
             By::Coordinate(_) | By::Speed(_) => 0.0,
             By::Parameter(index) => self.parameters.get(index).copied().unwrap_or(0.0),
-            By::Input(index) => self.inputs.get(index).copied().unwrap_or(0.0),
+            By::Input(index) => self.inputs.iter().filter_map(|row| row.get(index)).sum(),
+            By::Sample { input, row } => {
+                self.inputs.get(row).and_then(|row| row.get(input)).copied().unwrap_or(0.0)
+            }
             By::Friction(contact) => of_contacts(&self.friction, contact),
             By::Restitution(contact) => of_contacts(&self.restitution, contact),
         }
@@ -69,6 +76,7 @@ struct OfRoutine {
 /// Values of a routine, and the numbers from which they were computed.
 struct Evaluated {
     key: RoutineKey,
+    row: usize,
     values: Vec<f64>,
     tape: Vec<f64>,
 }
@@ -101,7 +109,7 @@ impl<'f> TransposedField<'f> {
         TransposedField {
             field,
             routines: BTreeMap::new(),
-            by_inputs: zeros(ComponentKind::Input),
+            by_inputs: vec![zeros(ComponentKind::Input); field.rows()],
             by_friction: zeros(ComponentKind::Contact),
             by_restitution: zeros(ComponentKind::Contact),
         }
@@ -122,6 +130,11 @@ impl<'f> TransposedField<'f> {
             friction: self.by_friction.clone(),
             restitution: self.by_restitution.clone(),
         }
+    }
+
+    /// The row of the table of sampled inputs from a time on.
+    pub fn row(&self, time: f64) -> usize {
+        self.field.row(time)
     }
 
     fn evaluate(&mut self, key: RoutineKey, place: &Place<'_>) -> Result<Evaluated, StateError> {
@@ -146,14 +159,15 @@ impl<'f> TransposedField<'f> {
         };
         let mut tape = Vec::new();
         let values = routine.routine.evaluate(&arguments, &mut tape).map_err(failed)?;
-        Ok(Evaluated { key, values, tape })
+        Ok(Evaluated { key, row: place.row, values, tape })
     }
 
     /// Adds the derivatives of a weighted sum of the values of a routine.
     fn transpose(&mut self, evaluated: &Evaluated, weights: &[f64], by: &mut ByState) {
         let Some(of) = self.routines.get_mut(&evaluated.key) else { return };
         let (coordinates, speeds) = by.state.split_at_mut(self.field.n);
-        let mut cotangents = Cotangents { time: 0.0, coordinates, speeds, inputs: &mut self.by_inputs };
+        let inputs = self.by_inputs.get_mut(evaluated.row).map_or(&mut [][..], |row| &mut row[..]);
+        let mut cotangents = Cotangents { time: 0.0, coordinates, speeds, inputs };
         of.routine.transpose(&evaluated.tape, weights, &mut cotangents, &mut of.by_constants);
         by.time += cotangents.time;
     }
@@ -253,7 +267,12 @@ impl<'f> TransposedField<'f> {
 
     /// The derivatives of the function that ended a part, times a factor.
     fn of_guard(&mut self, part: &SmoothPart, modes: &[Mode], factor: f64) -> Result<ByState, Reason> {
-        let place = Place { time: part.end, state: &part.last, inputs: &part.inputs };
+        let place = Place {
+            time: part.end,
+            state: &part.last,
+            inputs: &part.inputs,
+            row: self.field.row(part.start),
+        };
         let index = |contact: usize| {
             modes.iter().position(|mode| mode.contact == contact).ok_or(Reason::ModesChanged)
         };
@@ -328,7 +347,12 @@ impl<'f> TransposedField<'f> {
         of_speeds: &[f64],
     ) -> Result<ByState, Reason> {
         let p = self.field.p;
-        let place = Place { time: part.end, state: &struck.state, inputs: &part.inputs };
+        let place = Place {
+            time: part.end,
+            state: &struck.state,
+            inputs: &part.inputs,
+            row: self.field.row(part.start),
+        };
         let key = RoutineKey::ContactTerms(vec![struck.contact]);
         let evaluated = self.evaluate(key, &place).map_err(Reason::State)?;
         let terms = ContactTerms::values(self.field, evaluated.values.clone(), 1).map_err(Reason::State)?;

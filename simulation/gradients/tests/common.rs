@@ -67,7 +67,7 @@ impl Task {
                 all[index] += h;
                 task.mechanism.set_parameter_values(&all).unwrap();
             }
-            By::Input(_) => unreachable!(),
+            By::Input(_) | By::Sample { .. } => unreachable!(),
         }
         // Start states of rotations are of length one.
         task.mechanism.normalise(&mut task.q).unwrap();

@@ -6,5 +6,6 @@ mod cost;
 mod differences;
 mod fits;
 mod orbits;
+mod samples;
 mod undefined;
 mod validation;

@@ -23,6 +23,8 @@ from .results import Characteristics, ClosedContact, Collision, CollisionDerivat
 SpeedLaw = Union[None, str, Sequence[tuple[float, float]], Callable[[float], float]]
 #: A function of time, coordinates and speeds.
 Control = Callable[[float, Floats, Floats], Union[float, Sequence[float], Floats]]
+# a period, s, and inputs (k, w)
+Samples = tuple[float, Any]
 Watched = Callable[[float, Floats, Floats], float]
 
 
@@ -466,7 +468,7 @@ class Mechanism(_native.Mechanism):
 
     def _choices(
         self, own: Any, tolerance: Any, max_step: Any, control: Any = None, period: Any = None, events: Any = None, stop: Any = None,
-        together: Any = None, seed: Any = 0, **all_contacts: Any,
+        together: Any = None, seed: Any = 0, samples: Any = None, **all_contacts: Any,
     ) -> dict[str, Any]:
         """What a motion is to be like: the surfaces of all contacts and of those that have one of their own, and all else."""
         names = [stop] if isinstance(stop, str) else list(stop or ())
@@ -486,7 +488,7 @@ class Mechanism(_native.Mechanism):
             "surface": of(all_contacts), "law": law(all_contacts), "surfaces": [(contact, of(given)) for contact, given in own],
             "laws": [(contact, law(given)) for contact, given in own], "tolerance": optional_number(tolerance, "tolerance"),
             "max_step": optional_number(max_step, "max_step"), "control": control, "period": optional_number(period, "period"),
-            "events": list((events or {}).items()), "stop": [str(name) for name in names], "together": together, "seed": seed,
+            "samples": _samples(samples), "events": list((events or {}).items()), "stop": [str(name) for name in names], "together": together, "seed": seed,
         }  # fmt: skip
 
     def simulate_many(
@@ -517,11 +519,15 @@ class Mechanism(_native.Mechanism):
         self, by: Sequence[str], at: Union[float, Sequence[float], Floats], q: Rows = None, u: Rows = None, inputs: Rows = None,
         time: Optional[float] = None, *, mu: Optional[float] = None, e: Optional[float] = None, law: Optional[str] = None,
         tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None, max_step: Optional[float] = None,
+        samples: Optional[Samples] = None,
     ) -> MotionGradient:
         """A motion at the times ``at``, which rise, with its exact derivatives by the variables ``by``: names of coordinates and speeds of the start, of
-        parameters and held inputs, 'mu', 'e', or 'mu.CONTACT', 'e.CONTACT', through impacts and contact that lasts, as :class:`MotionGradient`."""
+        parameters and held inputs, 'mu', 'e', or 'mu.CONTACT', 'e.CONTACT', through impacts and contact that lasts, as :class:`MotionGradient`.
+
+        ``samples``: a period, s, and inputs (k, w) that are constant for a period each, from the start on, the last row to the end; 'INPUT[ROW]' is one of
+        them, 'INPUT' all of them together."""
         names = (by,) if isinstance(by, str) else tuple(by)
-        choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)
+        choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law, samples=samples)
         times = [float(value) for value in np.atleast_1d(numbers(at, "at"))]
         found = self._gradient((q, u, inputs, time), list(names), times, choices)
         return MotionGradient(found, names, len(self._names_of("coordinates")))
@@ -530,14 +536,14 @@ class Mechanism(_native.Mechanism):
         self, by: Sequence[str], at: Union[float, Sequence[float], Floats], weights: Union[Floats, Callable[[Floats, Floats], Any]],
         q: Rows = None, u: Rows = None, inputs: Rows = None, time: Optional[float] = None, *, mu: Optional[float] = None, e: Optional[float] = None,
         law: Optional[str] = None, tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None,
-        max_step: Optional[float] = None,
+        max_step: Optional[float] = None, samples: Optional[Samples] = None,
     ) -> Adjoint:
         """The derivatives of a function of the states at the times ``at`` by the variables ``by``, found backwards, as :class:`Adjoint`: at a cost that does
         not depend on their number. ``weights`` (k, n + p) is the gradient of the function by the coordinates and speeds at each time, or a function of
         these, q (k, n) and u (k, p), that returns it; first axes are several functions. All else is as for :meth:`gradient`. A motion without these
         derivatives raises a :class:`SimulationError`, ``not_differentiable``."""
         names = (by,) if isinstance(by, str) else tuple(by)
-        choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)
+        choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law, samples=samples)
         times = [float(value) for value in np.atleast_1d(numbers(at, "at"))]
         n = len(self._names_of("coordinates"))
         first: list[tuple[int, ...]] = []
@@ -695,6 +701,15 @@ def _restored(kind: type[Mechanism], text: str, derivation: Optional[str], param
 def restored(text: str, derivation: Optional[str], parameters: Floats) -> Mechanism:
     """A mechanism of the texts of model and derivation, and its parameters."""
     return _restored(Mechanism if derivation is not None else NumericMechanism, text, derivation, parameters)
+
+
+def _samples(samples: Any) -> Any:
+    """A period and the rows of a table of inputs."""
+    if samples is None:
+        return None
+    period, values = samples
+    table = numbers(values, "samples")
+    return float(period), np.atleast_2d(table).tolist()
 
 
 def _check_seed(seed: Any) -> None:
