@@ -2,7 +2,7 @@
 
 use hodograph::{ComponentKind, Mechanism as _, State};
 use hodograph_gradients::{
-    Adjoint, By, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return, Trajectory,
+    Adjoint, By, Exchange, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return, Trajectory,
     differentiate, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
@@ -34,6 +34,9 @@ pub struct Periodicity {
     /// numbers of coordinates that take their values of the start again
     #[pyo3(item)]
     reset: Vec<usize>,
+    /// what a symmetry does to the state that has returned
+    #[pyo3(item)]
+    exchange: Vec<String>,
     #[pyo3(item)]
     longest: f64,
     #[pyo3(item)]
@@ -248,7 +251,12 @@ pub fn orbit<'py>(
         }
         _ => return Err(argument(py, "expected either `period`, or `event` at which a motion returns")),
     };
-    let periodic = Periodic { returns, reset: of.reset.clone(), longest: of.longest };
+    let exchanged = |text: &String| {
+        Exchange::named(mechanism, text)
+            .map_err(|message| errors::argument(py, "exchange", "unknown_name", &message))
+    };
+    let symmetry = of.exchange.iter().map(exchanged).collect::<PyResult<Vec<Exchange>>>()?;
+    let periodic = Periodic { returns, reset: of.reset.clone(), symmetry, longest: of.longest };
     let all = PyDict::new(py);
     let Some((name, from, to)) = &of.follow else {
         let by = variables(py, mechanism, &of.by)?;

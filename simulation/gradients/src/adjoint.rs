@@ -9,12 +9,12 @@ use hodograph_simulation::stepper::{TransposedSystem, transpose};
 use hodograph_simulation::{Event, Options, SmoothPart};
 use nalgebra::DVector;
 
-use crate::field::Direction;
+use crate::field::{Direction, Field};
 use crate::junction::modes;
 use crate::modes::Mode;
 use crate::motion::{Followed, Piece, Propagation, Start, seeds};
 use crate::transposed::{ModeTape, Place, TransposedField};
-use crate::{By, GradientError, Reason, Sample, Undefined};
+use crate::{By, GradientError, MotionGradient, Reason, Sample, Undefined};
 
 /// A derivative along one direction of all variables, carried forwards, agrees with the derivatives that were found
 /// backwards to this part of its terms.
@@ -25,12 +25,15 @@ const AGREEMENT: f64 = 1e-6;
 /// It was carried forwards along one direction, in which all variables change: where the motion is not
 /// differentiable, that direction tells, and each answer is compared with it.
 pub struct Adjoint<'m> {
+    mechanism: &'m InterpretedMechanism,
     by: Vec<By>,
     /// columns of the derivatives of the start state: one for each variable, and one more
     start: Vec<f64>,
     direction: Direction,
     followed: Followed,
-    propagation: Propagation<'m>,
+    /// with its derivatives along the direction of all variables
+    motion: MotionGradient,
+    pieces: Vec<Piece>,
 }
 
 impl std::fmt::Debug for Adjoint<'_> {
@@ -79,7 +82,9 @@ impl<'m> Adjoint<'m> {
                 *reason = why;
             }
         }
-        Ok(Adjoint { by: by.to_vec(), start: seeds, direction, followed, propagation })
+        let Propagation { motion, pieces, .. } = propagation;
+        let pieces = pieces.unwrap_or_default();
+        Ok(Adjoint { mechanism, by: by.to_vec(), start: seeds, direction, followed, motion, pieces })
     }
 
     /// The variables.
@@ -99,7 +104,7 @@ impl<'m> Adjoint<'m> {
 
     /// The time and the reason if derivatives end.
     pub fn undefined(&self) -> Option<&Undefined> {
-        self.propagation.motion.undefined.as_ref()
+        self.motion.undefined.as_ref()
     }
 
     /// The derivatives of a function of the states at the given times, whose gradient by the state at each time
@@ -113,7 +118,7 @@ impl<'m> Adjoint<'m> {
     ///
     /// If there is not one vector for each time, with a number for each coordinate and independent speed.
     pub fn of_states(&self, weights: &[DVector<f64>]) -> Result<DVector<f64>, Undefined> {
-        let samples = &self.propagation.motion.samples;
+        let samples = &self.motion.samples;
         assert_eq!(weights.len(), samples.len(), "a vector of weights for each time");
         let mut along = Sum::default();
         for (sample, weights) in samples.iter().zip(weights) {
@@ -143,7 +148,7 @@ impl<'m> Adjoint<'m> {
     /// If there is no event with this index.
     pub fn of_time(&self, event: usize) -> Result<Option<DVector<f64>>, Undefined> {
         let time = self.followed.events[event].time;
-        let Some(by) = self.propagation.motion.events.get(event).and_then(|event| event.time.as_ref()) else {
+        let Some(by) = self.motion.events.get(event).and_then(|event| event.time.as_ref()) else {
             let ended = self.undefined().is_some_and(|undefined| undefined.time <= time);
             return if ended { Err(self.lacking(time)) } else { Ok(None) };
         };
@@ -159,10 +164,12 @@ impl<'m> Adjoint<'m> {
 
     /// The derivatives of an output by each variable; `along` is its derivative along the direction of all.
     fn backwards(&self, output: Output<'_>, along: &Sum) -> Result<DVector<f64>, Undefined> {
-        let mut field = TransposedField::new(&self.propagation.field);
-        let count = self.propagation.field.n + self.propagation.field.p;
+        let Followed { surfaces, sampling, .. } = &self.followed;
+        let field = Field::new(self.mechanism, Vec::new(), surfaces.clone(), *sampling);
+        let mut field = TransposedField::new(&field);
+        let count = self.start.len() / (self.by.len() + 1);
         let mut weights = vec![0.0; count];
-        for piece in self.propagation.pieces.iter().flatten().rev() {
+        for piece in self.pieces.iter().rev() {
             let done = self.through(piece, output, &mut field, &mut weights);
             done.map_err(|(time, reason)| Undefined { time, contact: None, reason })?;
         }

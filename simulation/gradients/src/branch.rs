@@ -9,6 +9,7 @@ use hodograph_simulation::Options;
 use nalgebra::{DMatrix, DVector};
 
 use crate::By;
+use crate::closed::Closed;
 use crate::family::set_value;
 use crate::orbit::{Orbit, OrbitError, Periodic, Returned, Task, find_orbit, solve};
 
@@ -208,8 +209,11 @@ impl Family<'_> {
             options: &options,
             periodic: self.periodic,
             by: &by,
+            closed: Closed::new(&mechanism, self.start),
         };
-        task.returned(state)
+        let mut state = state.to_vec();
+        task.close(&mut state)?;
+        task.returned(&state)
     }
 
     /// The point of the branch at the distance `h` along the tangent.

@@ -38,6 +38,7 @@
 mod adjoint;
 mod branch;
 mod by;
+mod closed;
 mod family;
 mod field;
 mod fit;
@@ -59,5 +60,5 @@ pub use family::with_values;
 pub use fit::{Fit, FitError, FitTask, fit};
 pub use loss::Loss;
 pub use motion::{EventGradient, GradientError, MotionGradient, Sample, differentiate};
-pub use orbit::{Orbit, OrbitError, Periodic, Return, find_orbit};
+pub use orbit::{Exchange, Orbit, OrbitError, Periodic, Return, find_orbit};
 pub use trajectory::Trajectory;

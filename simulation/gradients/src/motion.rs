@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::field::{At, Direction, Field, Sampling};
 use crate::junction::{EventDerivatives, Junction, NonDifferentiable, modes};
 use crate::modes::{Mode, ModeKind};
-use crate::{By, Reason, Undefined};
+use crate::{By, Reason, Undefined, closed};
 
 /// The states of the repeated integration agree with those of the motion to this part of their size.
 const STATE_AGREEMENT: f64 = 1e-6;
@@ -119,8 +119,8 @@ pub fn differentiate(
 pub(crate) enum Start {
     /// As given; a variable whose change opens a contact has no derivative.
     Free,
-    /// The speeds are projected, with the least change of kinetic energy, so that closed contacts stay closed
-    /// and do not begin to slip.
+    /// Coordinates are projected by the least change, and speeds by that of least kinetic energy, so that closed contacts
+    /// stay closed and do not begin to slip.
     Held,
 }
 
@@ -440,6 +440,11 @@ impl<'m> Propagation<'m> {
         let Some(first) = parts.first() else { return Ok(()) };
         let mut sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
         if how == Start::Held {
+            let contacts: Vec<usize> = first.closed.iter().map(|closed| closed.contact).collect();
+            let (coordinates, speeds) = first.first.split_at(self.field.n);
+            let state = State { time: first.start, coordinates, speeds, inputs: &first.inputs };
+            closed::project(self.field.mechanism, &contacts, &state, &mut self.by, self.field.k)
+                .map_err(|why| (None, why))?;
             let held = self.field.project(&modes(first), &self.field.at_start(first, &self.by));
             self.by = held.map_err(|why| (None, why))?;
             sizes.iter_mut().zip(&self.by).for_each(|(size, by)| *size += by.abs());

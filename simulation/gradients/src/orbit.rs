@@ -9,6 +9,7 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, EventKind, Options, Progress, Simulation};
 use nalgebra::{Complex, DMatrix, DVector};
 
+use crate::closed::Closed;
 use crate::motion::{Start, differentiate_from};
 use crate::{By, GradientError, Undefined};
 
@@ -42,8 +43,44 @@ pub struct Periodic {
     /// coordinates that are reset to their initial values after each period: those on which nothing depends,
     /// and those that a symmetry brings back (the next leg, the next spoke)
     pub reset: Vec<usize>,
+    /// what a symmetry does to the state that has returned, before that
+    pub symmetry: Vec<Exchange>,
     /// the longest period to wait for, s
     pub longest: f64,
+}
+
+/// A component of the returned state (coordinates, then independent speeds) takes the place of another one, as those of the
+/// other leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchange {
+    /// the component that is replaced
+    pub to: usize,
+    /// the component whose value it takes
+    pub from: usize,
+    /// whether its sign is turned
+    pub turned: bool,
+}
+
+impl Exchange {
+    /// The exchange `TO=FROM` or `TO=-FROM` of coordinates or independent speeds of these names.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that says what is wrong.
+    pub fn named(mechanism: &InterpretedMechanism, text: &str) -> Result<Self, String> {
+        let form = || format!("`{text}` is no exchange: give TO=FROM or TO=-FROM, as in q1=q2");
+        let (to, from) = text.split_once('=').ok_or_else(form)?;
+        let from = from.trim();
+        let (turned, from) = from.strip_prefix('-').map_or((false, from), |from| (true, from));
+        let n = mechanism.count(ComponentKind::Coordinate);
+        let index = |name: &str| {
+            let name = name.trim();
+            let speed = || mechanism.index(ComponentKind::Speed, name).map(|index| n + index);
+            let found = mechanism.index(ComponentKind::Coordinate, name).or_else(speed);
+            found.ok_or_else(|| format!("there is no coordinate or independent speed `{name}`"))
+        };
+        Ok(Exchange { to: index(to)?, from: index(from)?, turned })
+    }
 }
 
 /// A periodic motion.
@@ -140,7 +177,8 @@ pub fn find_orbit(
 ) -> Result<Orbit, OrbitError> {
     check(mechanism, start, periodic)?;
     let mut state: Vec<f64> = start.coordinates.iter().chain(start.speeds).copied().collect();
-    let task = Task { mechanism, start, options, periodic, by };
+    let task = Task { mechanism, start, options, periodic, by, closed: Closed::new(mechanism, start) };
+    task.close(&mut state)?;
     let mut here = task.returned(&state)?;
     for _ in 0..STEPS {
         let matrix = &here.matrix - DMatrix::identity(state.len(), state.len());
@@ -148,8 +186,9 @@ pub fn find_orbit(
         let mut nearer = None;
         let mut part = 1.0;
         for _ in 0..HALVINGS {
-            let trial: Vec<f64> =
+            let mut trial: Vec<f64> =
                 state.iter().zip(step.iter()).map(|(value, step)| value + part * step).collect();
+            task.close(&mut trial)?;
             if let Ok(there) = task.returned(&trial)
                 && there.residual < here.residual
             {
@@ -168,6 +207,10 @@ fn check(mechanism: &InterpretedMechanism, start: &State<'_>, periodic: &Periodi
     let bad = |what: &str| Err(OrbitError::BadRequest(what.to_owned()));
     if periodic.reset.iter().any(|&index| index >= mechanism.count(ComponentKind::Coordinate)) {
         return bad("a coordinate that is reset does not exist");
+    }
+    let count = start.coordinates.len() + start.speeds.len();
+    if periodic.symmetry.iter().any(|exchange| exchange.to >= count || exchange.from >= count) {
+        return bad("a component that is exchanged does not exist");
     }
     if !mechanism.quaternions().is_empty() {
         return bad("periodic motions of mechanisms with quaternions are not supported: use angles");
@@ -201,9 +244,18 @@ pub(crate) struct Task<'a> {
     pub options: &'a Options,
     pub periodic: &'a Periodic,
     pub by: &'a [By],
+    /// the contacts that are closed in the start state
+    pub closed: Closed,
 }
 
 impl Task<'_> {
+    /// Moves a state so that contacts which are closed at the start stay closed.
+    pub fn close(&self, state: &mut [f64]) -> Result<(), OrbitError> {
+        self.closed.close(self.mechanism, self.start, state).map_err(|reason| {
+            OrbitError::Undefined(Undefined { time: self.start.time, contact: None, reason })
+        })
+    }
+
     /// The time at the end of the period, s.
     fn time(&self, state: &State<'_>) -> Result<f64, OrbitError> {
         let (name, contact, count) = match &self.periodic.returns {
@@ -273,7 +325,13 @@ impl Task<'_> {
             };
             matrix.set_column(place, &derivative.column(column));
         }
-        let mut end = last;
+        let (mut end, before, by_before, matrix_before) = (last.clone(), last, by.clone(), matrix.clone());
+        for &Exchange { to, from, turned } in &self.periodic.symmetry {
+            let sign = if turned { -1.0 } else { 1.0 };
+            end[to] = sign * before[from];
+            matrix.set_row(to, &(matrix_before.row(from) * sign));
+            by.set_row(to, &(by_before.row(from) * sign));
+        }
         for &index in &self.periodic.reset {
             matrix.row_mut(index).fill(0.0);
             by.row_mut(index).fill(0.0);

@@ -265,6 +265,17 @@ impl<'f> TransposedField<'f> {
         Ok(())
     }
 
+    /// A gap, and its derivatives by the coordinates.
+    pub fn gap(&mut self, contact: usize, place: &Place<'_>) -> Result<(f64, Vec<f64>), Reason> {
+        let evaluated = self.evaluate(RoutineKey::Gap(contact), place).map_err(Reason::State)?;
+        let gap = evaluated.values.first().copied();
+        let gap = gap.ok_or(Reason::State(StateError::Undefined { what: "gap of this contact" }))?;
+        let mut by = ByState::none(self.field);
+        self.transpose(&evaluated, &[1.0], &mut by);
+        by.state.truncate(self.field.n);
+        Ok((gap, by.state))
+    }
+
     /// The derivatives of the function that ended a part, times a factor.
     fn of_guard(&mut self, part: &SmoothPart, modes: &[Mode], factor: f64) -> Result<ByState, Reason> {
         let place = Place {

@@ -1,8 +1,13 @@
 //! Periodic motions whose multipliers are known in closed form.
 
 use hodograph::{Law, Mechanism, State};
-use hodograph_gradients::{By, ChangeKind, OrbitError, Periodic, Return, find_orbit, follow_branch};
+use hodograph_gradients::{
+    By, ChangeKind, Exchange, OrbitError, Periodic, Return, find_orbit, follow_branch,
+};
+use hodograph_interpreter::InterpretedMechanism;
 use nalgebra::DMatrix;
+
+use compass::Compass;
 
 use crate::common::{options, read};
 
@@ -22,7 +27,7 @@ fn a_rimless_wheel_rolls_downhill() {
     let (q, u) = ([0.0, l * alpha.cos(), -alpha], [l * rate * alpha.cos(), l * rate * alpha.sin(), rate]);
     let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
     let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
-    let periodic = Periodic { returns, reset: vec![0, 1, 2], longest: 5.0 };
+    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0 };
     let by = [By::Parameter(4)];
     let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
     assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
@@ -51,7 +56,7 @@ fn a_walker_with_curved_feet() {
     let (q, u) = ([0.0, a, -alpha], [rate * a, rate * b, rate]);
     let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
     let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
-    let periodic = Periodic { returns, reset: vec![0, 1, 2], longest: 5.0 };
+    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0 };
     let by = [By::Parameter(5)];
     let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
     assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
@@ -101,6 +106,7 @@ fn periodic() -> Periodic {
     Periodic {
         returns: Return::After(2.0 * std::f64::consts::PI / LOCKED.w),
         reset: Vec::new(),
+        symmetry: Vec::new(),
         longest: 1.0,
     }
 }
@@ -181,7 +187,220 @@ fn motions_that_do_not_return_say_so() {
     let found = find_orbit(&mechanism, &start, &options, &periodic(), &[]);
     assert!(matches!(found, Err(OrbitError::NotFound(_))), "{found:?}");
     let returns = Return::At { event: "stick".to_owned(), contact: None, count: 9 };
-    let never = Periodic { returns, reset: Vec::new(), longest: 0.3 };
+    let never = Periodic { returns, reset: Vec::new(), symmetry: Vec::new(), longest: 0.3 };
     let found = find_orbit(&mechanism, &start, &options, &never, &[]);
     assert!(matches!(found, Err(OrbitError::NoReturn(_))), "{found:?}");
+}
+
+/// The compass by the equations of its two angles alone: of the leg that stands and of the one that swings, from the
+/// vertical, as Goswami, Espiau and Keramane give them. One step from the state just after an impact.
+mod compass {
+    use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+
+    /// The parameters of the model, in its order.
+    #[derive(Clone, Copy)]
+    pub struct Compass {
+        pub mh: f64,
+        pub m: f64,
+        pub a: f64,
+        pub b: f64,
+        pub g: f64,
+        pub gamma: f64,
+    }
+
+    /// Angles of standing and swinging leg from the normal of the incline, positive with the hips ahead of the foot, and
+    /// their rates.
+    type State = [f64; 4];
+
+    impl Compass {
+        fn rates(&self, y: &State) -> State {
+            let Compass { mh, m, a, b, g, gamma } = *self;
+            let l = a + b;
+            let [s, w, us, uw] = *y;
+            let (sine, cosine) = (s - w).sin_cos();
+            // The hips move on a circle about the standing foot; the swinging leg hangs from them.
+            let mass = Matrix2::new(
+                mh * l * l + m * (a * a + l * l),
+                -m * l * b * cosine,
+                -m * l * b * cosine,
+                m * b * b,
+            );
+            let coupling = m * l * b * sine;
+            let gravity = Vector2::new(
+                (mh * l + m * a + m * l) * g * (s + gamma).sin(),
+                -m * b * g * (w + gamma).sin(),
+            );
+            let right = Vector2::new(coupling * uw * uw, -coupling * us * us) + gravity;
+            let u = mass.lu().solve(&right).unwrap();
+            [us, uw, u[0], u[1]]
+        }
+
+        fn step(&self, y: &State, h: f64) -> State {
+            let add = |a: &State, b: &State, h: f64| -> State { std::array::from_fn(|i| a[i] + h * b[i]) };
+            let k1 = self.rates(y);
+            let k2 = self.rates(&add(y, &k1, h / 2.0));
+            let k3 = self.rates(&add(y, &k2, h / 2.0));
+            let k4 = self.rates(&add(y, &k3, h));
+            std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+        }
+
+        /// The angular momentum about the new foot, and of the leg that leaves about the hips, are kept. Returns the rates of
+        /// the new standing and swinging leg.
+        fn impact(&self, y: &State) -> [f64; 2] {
+            let Compass { mh, m, a, b, .. } = *self;
+            let l = a + b;
+            let [s, w, us, uw] = *y;
+            let cosine = (s - w).cos();
+            let before = Vector2::new(
+                ((mh * l * l + 2.0 * m * a * l) * cosine - m * a * b) * us - m * a * b * uw,
+                -m * a * b * us,
+            );
+            let mass = Matrix2::new(
+                mh * l * l + m * (a * a + l * l) - m * l * b * cosine,
+                m * b * b - m * l * b * cosine,
+                -m * l * b * cosine,
+                m * b * b,
+            );
+            let after = mass.lu().solve(&before).unwrap();
+            [after[0], after[1]]
+        }
+
+        /// From (angle of the standing leg, rates of both) to the same after a step; the angles of the legs are opposite.
+        pub fn stride(&self, y: &[f64; 3]) -> ([f64; 3], f64) {
+            let mut now: State = [y[0], -y[0], y[1], y[2]];
+            let (mut t, h) = (0.0, 4e-4);
+            loop {
+                let next = self.step(&now, h);
+                assert!(t < 10.0, "the compass falls");
+                // The foot of the leg ahead comes down.
+                if now[0] + now[1] < 0.0 && next[0] + next[1] >= 0.0 && next[1] < next[0] {
+                    break;
+                }
+                (now, t) = (next, t + h);
+            }
+            let (mut low, mut high) = (0.0, h);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                let there = self.step(&now, middle);
+                if there[0] + there[1] > 0.0 { high = middle } else { low = middle }
+            }
+            let last = self.step(&now, low);
+            let [us, uw] = self.impact(&last);
+            ([last[1], us, uw], t + low)
+        }
+
+        /// The periodic step and its multipliers, by differences.
+        pub fn orbit(&self, mut y: [f64; 3]) -> ([f64; 3], f64, Vec<nalgebra::Complex<f64>>) {
+            let slopes = |y: &[f64; 3]| {
+                DMatrix::from_fn(3, 3, |row, column| {
+                    let at = |h: f64| {
+                        let mut y = *y;
+                        y[column] += h;
+                        self.stride(&y).0[row]
+                    };
+                    let central = |h: f64| (at(h) - at(-h)) / (2.0 * h);
+                    (4.0 * central(1e-4) - central(2e-4)) / 3.0
+                })
+            };
+            for _ in 0..8 {
+                let off = DVector::from_fn(3, |row, _| self.stride(&y).0[row] - y[row]);
+                let change = (slopes(&y) - DMatrix::identity(3, 3)).lu().solve(&-off).unwrap();
+                y = std::array::from_fn(|row| y[row] + change[row]);
+            }
+            let mut multipliers: Vec<_> = slopes(&y).complex_eigenvalues().iter().copied().collect();
+            multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+            (y, self.stride(&y).1, multipliers)
+        }
+    }
+}
+
+/// The step after which both legs have changed their places.
+fn stride(mechanism: &InterpretedMechanism) -> Periodic {
+    let exchange = |text: &str| Exchange::named(mechanism, text).unwrap();
+    Periodic {
+        returns: Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 },
+        reset: vec![0],
+        symmetry: ["q1=q2", "q2=q1", "u1=u2", "u2=u1"].map(exchange).to_vec(),
+        longest: 8.0,
+    }
+}
+
+/// Coordinates and speeds with both feet on the ground, the first of which stands.
+fn standing(q: f64, u: [f64; 2]) -> ([f64; 4], [f64; 4]) {
+    ([-q.sin(), q.cos(), -q, q], [q.cos() * u[0], q.sin() * u[0], u[0], u[1]])
+}
+
+/// A compass walks downhill, and so does the simplest walker, whose legs have hardly any mass: their legs change with
+/// every step. States, periods and multipliers are those of the equations of two angles.
+#[test]
+fn a_compass_walks_downhill() {
+    let of = |mh, m, a, b, g, gamma| Compass { mh, m, a, b, g, gamma };
+    let goswami = (of(10.0, 5.0, 0.5, 0.5, 9.81, 3.0_f64.to_radians()), 0.53, 0.271, [1.09, 0.38], 1.0);
+    // Light legs cost digits.
+    let garcia = (of(1.0, 1e-6, 0.0, 1.0, 1.0, 0.009), 0.398, 0.2, [0.2, 0.184], 100.0);
+    for (compass, tiles, q, u, loss) in [goswami, garcia] {
+        let Compass { mh, m, a, b, g, gamma } = compass;
+        let mut mechanism = read("compass_walker.mech");
+        mechanism.set_parameter_values(&[mh, m, a, b, g, gamma, tiles, 0.2]).unwrap();
+        let (coordinates, speeds) = standing(q, u);
+        let start = State { time: 0.0, coordinates: &coordinates, speeds: &speeds, inputs: &[] };
+        let options = options(2.0, 0.0, Law::Poisson);
+        let orbit = find_orbit(&mechanism, &start, &options, &stride(&mechanism), &[]).unwrap();
+        let (exact, period, multipliers) = compass.orbit([-q, u[0], u[1]]);
+        println!("{:?} {exact:?} {} {period}", orbit.state, orbit.period);
+        println!("{:?} {multipliers:?}", orbit.multipliers);
+        for (place, exact) in [2, 6, 7].into_iter().zip(exact) {
+            assert!(
+                (orbit.state[place] - exact).abs() < 1e-11 * loss,
+                "{} instead of {exact}",
+                orbit.state[place]
+            );
+        }
+        assert!(
+            (orbit.period - period).abs() < 1e-11 * loss
+                && orbit.is_stable()
+                && orbit.residual < 1e-12 * loss
+        );
+        for (found, exact) in orbit.multipliers.iter().zip(multipliers) {
+            // Those of a pair come in any order.
+            let off = (found - exact).norm().min((found - exact.conj()).norm());
+            assert!(off < 1e-8 * loss, "{found} instead of {exact}");
+        }
+        assert!(
+            orbit.multipliers[3..].iter().all(|other| other.norm() < 1e-9 * loss),
+            "{:?}",
+            orbit.multipliers
+        );
+        if m < 1e-3 {
+            // Garcia, Chatterjee, Ruina and Coleman (1998), for legs without mass.
+            assert!(
+                (orbit.state[3] - 0.200_310_9).abs() < 1e-6 && (orbit.state[6] - 0.199_832_5).abs() < 1e-6
+            );
+        }
+    }
+}
+
+/// The compass on steeper inclines: its step doubles its period at 4.39 degrees.
+#[test]
+fn the_step_of_a_compass_doubles_its_period() {
+    let mechanism = read("compass_walker.mech");
+    let (coordinates, speeds) = standing(0.271, [1.09, 0.38]);
+    let start = State { time: 0.0, coordinates: &coordinates, speeds: &speeds, inputs: &[] };
+    let options = options(2.0, 0.0, Law::Poisson);
+    let range = (By::Parameter(5), 3.0_f64.to_radians(), 0.08);
+    let found = follow_branch(&mechanism, &start, &options, &stride(&mechanism), range, 60);
+    let branch = found.unwrap();
+    println!("{} points, ended {:?}", branch.points.len(), branch.ended);
+    for change in &branch.changes {
+        println!("{:?} at {} degrees", change.kind, change.at.value.to_degrees());
+    }
+    let [change] = &branch.changes[..] else { panic!("{:?}", branch.changes) };
+    assert_eq!(change.kind, ChangeKind::PeriodDoubling);
+    // Goswami, Espiau and Keramane found it near 4.37 degrees. By the equations of two angles -1 is a multiplier there.
+    assert!((change.at.value.to_degrees() - 4.37).abs() < 0.03, "{}", change.at.value.to_degrees());
+    let compass = Compass { mh: 10.0, m: 5.0, a: 0.5, b: 0.5, g: 9.81, gamma: change.at.value };
+    let at = &change.at.orbit.state;
+    let (_, _, multipliers) = compass.orbit([at[2], at[6], at[7]]);
+    let least = multipliers.iter().map(|multiplier| (multiplier + 1.0).norm()).fold(f64::INFINITY, f64::min);
+    assert!(least < 1e-6, "{multipliers:?}");
 }

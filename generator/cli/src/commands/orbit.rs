@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use hodograph::{ComponentKind, Mechanism as _};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_gradients::{
-    BranchPoint, By, GradientError, Orbit, OrbitError, Periodic, Return, find_orbit, follow_branch,
+    BranchPoint, By, Exchange, GradientError, Orbit, OrbitError, Periodic, Return, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
 use serde::Serialize;
@@ -40,6 +40,10 @@ pub struct Arguments {
     /// and those that a symmetry brings back, such as the angle of the next spoke
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     reset: Vec<String>,
+    /// what a symmetry does to the state that has returned: coordinates and speeds take the places of others, as q1=q2,q2=q1
+    /// (or q1=-q2) of the legs that change
+    #[arg(long, value_name = "TO=FROM,..", value_delimiter = ',')]
+    exchange: Vec<String>,
     /// the longest period to wait for, s
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
     longest: f64,
@@ -128,6 +132,10 @@ impl Arguments {
             })
         });
         let reset = reset.collect::<Outcome<Vec<usize>>>()?;
+        let exchange = self.exchange.iter().map(|text| {
+            Exchange::named(mechanism, text).map_err(|message| Stop::Call(format!("--exchange: {message}")))
+        });
+        let symmetry = exchange.collect::<Outcome<Vec<Exchange>>>()?;
         let returns = match (&self.period, &self.returns) {
             (Some(period), _) => Return::After(
                 expression::number(period)
@@ -156,7 +164,7 @@ impl Arguments {
             }
             (None, None) => return Err(Stop::Call("give --period or --return".to_owned())),
         };
-        Ok(Periodic { returns, reset, longest: self.longest })
+        Ok(Periodic { returns, reset, symmetry, longest: self.longest })
     }
 }
 
