@@ -244,6 +244,17 @@ def test_gradients_by_samples_of_inputs():
         hopper.gradient("tau[4]", 0.1, **start, samples=(0.05, values))
 
 
+def test_a_compass_walks_as_its_legs_change():
+    compass = hodograph.load(ROOT / "simulation/gradients/tests/models/compass_walker.mech")
+    legs = {"q1": "q2", "q2": "q1", "u1": "u2", "u2": "u1"}
+    walk = dict(event="collision", contact="second", reset=["x"], mu=2.0, e=0.0, law="poisson")
+    step = compass.orbit(exchange=legs, **walk)
+    assert step.period == pytest.approx(0.734346391159, abs=1e-10) and step.stable
+    assert step.multipliers[2].real == pytest.approx(0.131572624, abs=1e-8)
+    with pytest.raises(hodograph.ArgumentError, match="no coordinate or independent speed `q7`"):
+        compass.orbit(exchange={"q1": "-q7"}, **walk)
+
+
 def test_orbits_and_branches_of_the_bouncing_ball_on_a_plate():
     m = hodograph.load(ROOT / "simulation/gradients/tests/models/ball_on_plate.mech")
     a, g, w, e = 0.002, 9.81, 60.0, 0.7

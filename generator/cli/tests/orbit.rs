@@ -52,3 +52,21 @@ fn a_branch_doubles_its_period() {
     assert!((number(&change["value"]) - at).abs() < 1e-10, "{change}");
     assert!(answer["motions"].as_array().unwrap().len() > 10);
 }
+
+/// The legs of a compass change with every step.
+#[test]
+fn a_compass_walks_as_its_legs_change() {
+    let path = path("compass_walker.mech");
+    let call = ["orbit", &path, "--return", "collision:second", "--reset", "x"];
+    let surface = ["--mu", "2", "--e", "0", "--law", "poisson"];
+    let exchange = |names: &str| hodograph(&[&call[..], &["--exchange", names], &surface[..]].concat(), "");
+    let run = exchange("q1=q2,q2=q1,u1=u2,u2=u1");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let motion = &run.line()["motions"][0];
+    assert!((number(&motion["period"]) - 0.734_346_391_159).abs() < 1e-10, "{motion}");
+    assert!((number(&motion["multipliers"][2][0]) - 0.131_572_624).abs() < 1e-8, "{motion}");
+    for (names, why) in [("q1", "give TO=FROM"), ("q1=-q7", "no coordinate or independent speed `q7`")] {
+        let run = exchange(names);
+        assert!(run.code == 2 && run.stderr.contains(why), "{}", run.stderr);
+    }
+}
