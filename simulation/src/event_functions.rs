@@ -181,10 +181,22 @@ impl Transition<'_> {
 
     /// A bound of the rounding error of the mean normal velocity of a contact: 4 eps of the terms of its
     /// velocity, but at most the greater of [`FAINT`] of the smallest velocity that matters and 4 eps of the
-    /// terms of the normal velocity itself.
+    /// terms of the normal velocity itself; and what rounding of the time does to a surface that is driven.
     fn rounding_of_rate(&self, contact: usize) -> f64 {
         let [all, normal] = self.rounding_of_velocity(contact);
-        all.min(normal.max(FAINT * self.front.scales.slow))
+        all.min(normal.max(FAINT * self.front.scales.slow)) + self.rounding_of_time(contact)
+    }
+
+    /// The change of the normal velocity of a contact over 2 eps of the time, for the same coordinates and speeds.
+    fn rounding_of_time(&self, contact: usize) -> f64 {
+        let here = self.here();
+        let velocity = |time| {
+            let state = State { time, ..here };
+            self.mechanism.contact_velocity(contact, &state).map_or(0.0, |velocity| velocity.x)
+        };
+        let short = SHARE * self.front.scales.time;
+        let change = velocity(here.time + short) - velocity(here.time);
+        2.0 * f64::EPSILON * (here.time / short * change).abs()
     }
 
     /// The approach that projections leave of the normal velocity of a contact that lifts off here, which is

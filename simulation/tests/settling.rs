@@ -1,7 +1,9 @@
 //! Motions that did not settle once: two boxes with a hinge thrown on a table, and balls in a groove.
 
 use crate::many::{Start, follow, model, surface, with_parameters};
-use hodograph::Law;
+use hodograph::{Law, State};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::Simulation;
 
 /// The numbers of an object in a state file: `"name": number`.
 fn numbers(text: &str, object: &str) -> Vec<(String, f64)> {
@@ -98,4 +100,22 @@ fn cubes_that_rattle_end_with_one_plastic_impact() {
     let end = follow(&cubes, &start, surface(0.5634622646000488, 0.24931545975906344, Law::Newton), 1e-6);
     assert!(end.error.is_none(), "{:?}", end.error);
     assert!(end.events.len() < 400 && end.account.abs() < 1e-10, "{} {:e}", end.events.len(), end.account);
+}
+
+/// A ball that bounces on a plate, comes to rest on it and leaves it where the plate falls away: then bodies part like the
+/// third power of time, from a normal velocity that is less than what the rounding of a late time makes of that of the plate.
+#[test]
+fn a_ball_leaves_a_plate_late() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/gradients/tests/models/ball_on_plate.mech");
+    let ball = InterpretedMechanism::read(path.as_ref()).unwrap();
+    let mut left = 0;
+    for a in [0.003_483, 0.003_597, 0.003_636_000_000_000_000_3, 0.003_828_000_000_000_000_2, 0.004_179] {
+        let plate = with_parameters(&ball, &[("a", a)]);
+        let start = State { time: 0.05, coordinates: &[0.0139], speeds: &[0.14], inputs: &[] };
+        let options = surface(0.0, 0.7, Law::Newton);
+        let mut simulation = Simulation::new(&plate, &start, options).unwrap();
+        let events = simulation.advance_to(11.0).unwrap_or_else(|error| panic!("{a}: {error}"));
+        left += events.iter().filter(|event| event.kind.name() == "lift_off").count();
+    }
+    assert!(left > 200, "{left}");
 }
