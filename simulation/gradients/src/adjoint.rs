@@ -10,9 +10,10 @@ use hodograph_simulation::{Event, Options, SmoothPart};
 use nalgebra::DVector;
 
 use crate::field::{Direction, Field};
+use crate::followed::Followed;
 use crate::junction::modes;
 use crate::modes::Mode;
-use crate::motion::{Followed, Piece, Propagation, Start, seeds};
+use crate::motion::{Piece, Propagation, Start, seeds};
 use crate::transposed::{ModeTape, Place, TransposedField};
 use crate::{By, GradientError, MotionGradient, Reason, Sample, Undefined};
 

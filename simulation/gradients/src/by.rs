@@ -30,8 +30,8 @@ pub enum By {
 }
 
 impl By {
-    /// The variable with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, the name of a coordinate, speed,
-    /// parameter or input, or `INPUT[ROW]`, a sample of an input. If a coordinate or parameter of the model is called `mu` or `e`, the name means
+    /// The variable with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, the name of a coordinate, speed, parameter or
+    /// input, or `INPUT[ROW]`, a sample of an input. If a coordinate or parameter of the model is called `mu` or `e`, the name means
     /// that.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 //!
 //! Theory: docs/theory.md, section 20.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use hodograph::{ComponentKind, Mechanism, State};
@@ -211,6 +212,14 @@ fn check(mechanism: &InterpretedMechanism, start: &State<'_>, periodic: &Periodi
     let count = start.coordinates.len() + start.speeds.len();
     if periodic.symmetry.iter().any(|exchange| exchange.to >= count || exchange.from >= count) {
         return bad("a component that is exchanged does not exist");
+    }
+    let n = start.coordinates.len();
+    if periodic.symmetry.iter().any(|exchange| (exchange.to < n) != (exchange.from < n)) {
+        return bad("a coordinate takes the value of a coordinate, and a speed that of a speed");
+    }
+    let places: BTreeSet<usize> = periodic.symmetry.iter().map(|exchange| exchange.to).collect();
+    if places.len() < periodic.symmetry.len() {
+        return bad("a component is exchanged twice");
     }
     if !mechanism.quaternions().is_empty() {
         return bad("periodic motions of mechanisms with quaternions are not supported: use angles");

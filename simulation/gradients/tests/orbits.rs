@@ -380,6 +380,20 @@ fn a_compass_walks_downhill() {
     }
 }
 
+/// Exchanges that are no symmetry of any state.
+#[test]
+fn impossible_exchanges_are_refused() {
+    let mechanism = read("compass_walker.mech");
+    let (coordinates, speeds) = standing(0.271, [1.09, 0.38]);
+    let start = State { time: 0.0, coordinates: &coordinates, speeds: &speeds, inputs: &[] };
+    for exchanges in [["q1=q2", "q1=q2"], ["q1=u2", "q2=q1"]] {
+        let symmetry = exchanges.map(|text| Exchange::named(&mechanism, text).unwrap()).to_vec();
+        let periodic = Periodic { symmetry, ..stride(&mechanism) };
+        let found = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &[]);
+        assert!(matches!(found, Err(OrbitError::BadRequest(_))), "{found:?}");
+    }
+}
+
 /// The compass on steeper inclines: its step doubles its period at 4.39 degrees.
 #[test]
 fn the_step_of_a_compass_doubles_its_period() {

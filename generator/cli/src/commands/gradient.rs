@@ -54,6 +54,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let named = |name: &&str| By::named(&mechanism, name);
             let by: Result<Vec<By>, String> = names.by.iter().map(named).collect();
             let by = by.map_err(|message| Failure::new(Kind::UnknownName, message))?;
+            if let Some(sample) = by.iter().find(|by| matches!(by, By::Sample { .. })) {
+                let name = sample.name(&mechanism);
+                return Err(Stop::Call(format!(
+                    "--by {name}: inputs are held here; a table of samples is given in Rust or Python"
+                )));
+            }
             let start = state.borrowed();
             let options = arguments.motion.options(&mechanism, &start)?;
             let found = differentiate(&mechanism, &start, options, &by, &arguments.at).map_err(stop)?;
