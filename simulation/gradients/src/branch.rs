@@ -9,9 +9,10 @@ use hodograph_simulation::Options;
 use nalgebra::{DMatrix, DVector};
 
 use crate::By;
-use crate::closed::Closed;
 use crate::family::set_value;
-use crate::orbit::{Orbit, OrbitError, Periodic, Returned, Task, find_orbit, solve};
+use crate::orbit::{Found, seek, solve};
+use crate::periodic::{Orbit, OrbitError, Periodic};
+use crate::shooting::{Nodes, Returned, Task};
 
 /// A periodic motion at a value of the parameter.
 #[derive(Clone, Debug)]
@@ -97,14 +98,14 @@ pub fn follow_branch(
     }
     let family = Family { mechanism, start, options, periodic, by };
     let (here, surfaces) = family.at(from)?;
-    let orbit = find_orbit(&here, start, &surfaces, periodic, &[by])?;
-    let n = orbit.state.len();
-    let size = orbit.state.iter().fold(f64::MIN_POSITIVE, |size, value| size.max(value.abs()));
-    let mut scale: Vec<f64> = orbit.state.iter().map(|value| value.abs().max(1e-2 * size)).collect();
+    let found = seek(&here, start, &surfaces, periodic, &[by])?;
+    let n = start.coordinates.len() + start.speeds.len();
+    let size = found.states[..n].iter().fold(f64::MIN_POSITIVE, |size, value| size.max(value.abs()));
+    let mut scale: Vec<f64> = found.states[..n].iter().map(|value| value.abs().max(1e-2 * size)).collect();
     scale.push((to - from).abs());
     let mut toward = DVector::zeros(n + 1);
     toward[n] = (to - from).signum();
-    let mut point = Point::new(orbit, from, &scale, &toward);
+    let mut point = Point::new(found, from, &scale, &toward);
     let mut branch = Branch { points: vec![point.public()], changes: Vec::new(), ended: None };
     let mut h = FIRST_STEP;
     while branch.points.len() < most {
@@ -147,9 +148,11 @@ struct Family<'a> {
     by: By,
 }
 
-/// A point of a branch, with the tangent of the branch in scaled variables.
+/// A point of a branch, with the tangent of the branch in the scaled initial state and parameter.
 struct Point {
     orbit: Orbit,
+    states: Vec<f64>,
+    nodes: Nodes,
     value: f64,
     tangent: DVector<f64>,
     /// the test functions that vanish at changes, in the order of the kinds
@@ -157,16 +160,19 @@ struct Point {
 }
 
 impl Point {
-    fn new(orbit: Orbit, value: f64, scale: &[f64], toward: &DVector<f64>) -> Self {
+    fn new(found: Found, value: f64, scale: &[f64], toward: &DVector<f64>) -> Self {
+        let Found { states, returned, nodes } = found;
+        let orbit = returned.orbit(&states, &nodes);
         let n = orbit.state.len();
-        let matrix = bordered(&orbit.matrix, &orbit.by, scale, toward);
+        let off = &orbit.matrix - DMatrix::identity(n, n);
+        let matrix = bordered(&off, &orbit.by, scale, toward);
         let mut last = DVector::zeros(n + 1);
         last[n] = 1.0;
         let tangent = solve(&matrix, &last).normalize();
         let doubling = (&orbit.matrix + DMatrix::identity(n, n)).determinant();
-        let crossing = bordered(&orbit.matrix, &orbit.by, scale, &tangent).determinant();
+        let crossing = bordered(&off, &orbit.by, scale, &tangent).determinant();
         let tests = [tangent[n], doubling, crossing];
-        Point { orbit, value, tangent, tests }
+        Point { orbit, states, nodes, value, tangent, tests }
     }
 
     fn test(&self, kind: ChangeKind) -> f64 {
@@ -182,13 +188,15 @@ impl Point {
     }
 }
 
-/// The derivatives of (return - state) with respect to the scaled state and parameter, bordered by a row.
+/// The derivatives of the differences with respect to scaled states and parameter, bordered by a row of the initial state and
+/// the parameter.
 fn bordered(matrix: &DMatrix<f64>, by: &DMatrix<f64>, scale: &[f64], row: &DVector<f64>) -> DMatrix<f64> {
-    let n = matrix.nrows();
-    DMatrix::from_fn(n + 1, n + 1, |i, j| match (i == n, j == n) {
-        (true, _) => row[j],
-        (false, true) => by[(i, 0)] * scale[n] / scale[i],
-        (false, false) => (matrix[(i, j)] - f64::from(u8::from(i == j))) * scale[j] / scale[i],
+    let (all, n) = (matrix.nrows(), scale.len() - 1);
+    DMatrix::from_fn(all + 1, all + 1, |i, j| match (i == all, j == all) {
+        (true, true) => row[n],
+        (true, false) => if j < n { row[j] } else { 0.0 },
+        (false, true) => by[(i, 0)] * scale[n] / scale[i % n],
+        (false, false) => matrix[(i, j)] * scale[j % n] / scale[i % n],
     })
 }
 
@@ -200,49 +208,64 @@ impl Family<'_> {
         Ok((mechanism, options))
     }
 
-    fn returned(&self, state: &[f64], value: f64) -> Result<Returned, OrbitError> {
+    /// What a motion at a value of the parameter returns.
+    fn with<R>(
+        &self,
+        nodes: &Nodes,
+        value: f64,
+        ask: impl FnOnce(&Task<'_>) -> Result<R, OrbitError>,
+    ) -> Result<R, OrbitError> {
         let (mechanism, options) = self.at(value)?;
         let by = [self.by];
-        let task = Task {
-            mechanism: &mechanism,
-            start: self.start,
-            options: &options,
-            periodic: self.periodic,
-            by: &by,
-            closed: Closed::new(&mechanism, self.start),
-        };
-        let mut state = state.to_vec();
-        task.close(&mut state)?;
-        task.returned(&state)
+        let Self { start, periodic, .. } = *self;
+        ask(&Task { mechanism: &mechanism, start, options: &options, periodic, by: &by, nodes })
+    }
+
+    fn returned(&self, nodes: &Nodes, states: &[f64], value: f64) -> Result<Returned, OrbitError> {
+        self.with(nodes, value, |task| {
+            let mut states = states.to_vec();
+            task.close(&mut states)?;
+            task.returned(&states)
+        })
     }
 
     /// The point of the branch at the distance `h` along the tangent.
     fn step(&self, from: &Point, h: f64, scale: &[f64]) -> Result<Point, OrbitError> {
         let n = from.orbit.state.len();
+        // Times of events change along the branch, and nodes keep away from them.
+        let (nodes, mut states) = if from.nodes.count() > 1 {
+            self.with(&from.nodes, from.value, |task| task.divided(&from.states))?
+        } else {
+            (from.nodes.clone(), from.states.clone())
+        };
         let ahead = |place: usize, value: f64| value + h * from.tangent[place] * scale[place];
-        let mut state: Vec<f64> =
-            from.orbit.state.iter().enumerate().map(|(place, value)| ahead(place, *value)).collect();
+        states.iter_mut().take(n).enumerate().for_each(|(place, value)| *value = ahead(place, *value));
         let mut value = ahead(n, from.value);
         let mut before = f64::INFINITY;
         for _ in 0..NEWTON_STEPS {
-            let here = self.returned(&state, value)?;
+            let here = self.returned(&nodes, &states, value)?;
             if here.residual <= TOLERANCE && (here.residual >= 0.5 * before || here.residual < 1e-14) {
-                return Ok(Point::new(here.orbit(state), value, scale, &from.tangent));
+                let found = Found { states, returned: here, nodes };
+                return Ok(Point::new(found, value, scale, &from.tangent));
             }
             before = here.residual;
-            let off = here.difference(&state);
+            let all = states.len();
             // The correction is perpendicular to the tangent.
-            let right =
-                DVector::from_fn(n + 1, |place, _| if place < n { -off[place] / scale[place] } else { 0.0 });
-            let change = solve(&bordered(&here.matrix, &here.by, scale, &from.tangent), &right);
-            state.iter_mut().enumerate().for_each(|(place, value)| *value += change[place] * scale[place]);
-            value += change[n] * scale[n];
+            let mut right = DVector::zeros(all + 1);
+            here.difference().iter().enumerate().for_each(|(place, off)| right[place] = -off / scale[place % n]);
+            let matrix = bordered(&here.jacobian(), &here.by_variables(), scale, &from.tangent);
+            let change = solve(&matrix, &right);
+            states
+                .iter_mut()
+                .enumerate()
+                .for_each(|(place, value)| *value += change[place] * scale[place % n]);
+            value += change[all] * scale[n];
         }
-        let here = self.returned(&state, value)?;
+        let here = self.returned(&nodes, &states, value)?;
         if here.residual > TOLERANCE {
             return Err(OrbitError::NotFound(here.residual));
         }
-        Ok(Point::new(here.orbit(state), value, scale, &from.tangent))
+        Ok(Point::new(Found { states, returned: here, nodes }, value, scale, &from.tangent))
     }
 
     /// The point between two others where the test function of a change vanishes, by false position.

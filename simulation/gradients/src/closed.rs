@@ -19,6 +19,7 @@ const STEPS: usize = 8;
 const SINGULAR: f64 = 1e-9;
 
 /// The contacts that are closed in a start state, or meant to be.
+#[derive(Clone, Debug)]
 pub(crate) struct Closed {
     /// all of them
     contacts: Vec<usize>,

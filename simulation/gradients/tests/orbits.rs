@@ -27,7 +27,7 @@ fn a_rimless_wheel_rolls_downhill() {
     let (q, u) = ([0.0, l * alpha.cos(), -alpha], [l * rate * alpha.cos(), l * rate * alpha.sin(), rate]);
     let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
     let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
-    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0 };
+    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0, segments: 1 };
     let by = [By::Parameter(4)];
     let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
     assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
@@ -56,7 +56,7 @@ fn a_walker_with_curved_feet() {
     let (q, u) = ([0.0, a, -alpha], [rate * a, rate * b, rate]);
     let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
     let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
-    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0 };
+    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0, segments: 1 };
     let by = [By::Parameter(5)];
     let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
     assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
@@ -108,6 +108,7 @@ fn periodic() -> Periodic {
         reset: Vec::new(),
         symmetry: Vec::new(),
         longest: 1.0,
+        segments: 1,
     }
 }
 
@@ -187,7 +188,7 @@ fn motions_that_do_not_return_say_so() {
     let found = find_orbit(&mechanism, &start, &options, &periodic(), &[]);
     assert!(matches!(found, Err(OrbitError::NotFound(_))), "{found:?}");
     let returns = Return::At { event: "stick".to_owned(), contact: None, count: 9 };
-    let never = Periodic { returns, reset: Vec::new(), symmetry: Vec::new(), longest: 0.3 };
+    let never = Periodic { returns, reset: Vec::new(), symmetry: Vec::new(), longest: 0.3, segments: 1 };
     let found = find_orbit(&mechanism, &start, &options, &never, &[]);
     assert!(matches!(found, Err(OrbitError::NoReturn(_))), "{found:?}");
 }
@@ -322,6 +323,7 @@ fn stride(mechanism: &InterpretedMechanism) -> Periodic {
         reset: vec![0],
         symmetry: ["q1=q2", "q2=q1", "u1=u2", "u2=u1"].map(exchange).to_vec(),
         longest: 8.0,
+        segments: 1,
     }
 }
 
