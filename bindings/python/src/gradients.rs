@@ -39,6 +39,9 @@ pub struct Periodicity {
     exchange: Vec<String>,
     #[pyo3(item)]
     longest: f64,
+    /// segments of a period
+    #[pyo3(item)]
+    segments: usize,
     #[pyo3(item)]
     by: Vec<String>,
     /// a variable that a branch is followed through, and its range
@@ -212,6 +215,9 @@ fn of_orbit<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     all.set_item("state", PyArray1::from_slice(py, &orbit.state))?;
+    let nodes: Vec<(f64, Bound<'py, PyArray1<f64>>)> =
+        orbit.nodes.iter().map(|(time, state)| (*time, PyArray1::from_slice(py, state))).collect();
+    all.set_item("nodes", nodes)?;
     all.set_item("period", orbit.period)?;
     all.set_item("matrix", matrix(py, &orbit.matrix)?)?;
     all.set_item("by", matrix(py, &orbit.by)?)?;
@@ -256,7 +262,7 @@ pub fn orbit<'py>(
             .map_err(|message| errors::argument(py, "exchange", "unknown_name", &message))
     };
     let symmetry = of.exchange.iter().map(exchanged).collect::<PyResult<Vec<Exchange>>>()?;
-    let periodic = Periodic { returns, reset: of.reset.clone(), symmetry, longest: of.longest };
+    let periodic = Periodic { returns, reset: of.reset.clone(), symmetry, longest: of.longest, segments: of.segments };
     let all = PyDict::new(py);
     let Some((name, from, to)) = &of.follow else {
         let by = variables(py, mechanism, &of.by)?;

@@ -94,12 +94,13 @@ impl Field<'_> {
     }
 
     /// Derivatives of a state in which the derivatives of the speeds are projected, with the least kinetic
-    /// energy, so that closed contacts do not separate, and sticking ones do not slip.
-    pub fn project(&self, modes: &[Mode], at: &At<'_>) -> Result<Vec<f64>, Reason> {
+    /// energy, so that closed contacts do not separate, and sticking ones do not slip; and the sizes of their terms.
+    pub fn project(&self, modes: &[Mode], at: &At<'_>) -> Result<(Vec<f64>, Vec<f64>), Reason> {
         let (n, p, k) = (self.n, self.p, self.k);
         let mut by = at.by.to_vec();
+        let mut sizes: Vec<f64> = by.iter().map(|by| by.abs()).collect();
         if modes.is_empty() {
-            return Ok(by);
+            return Ok((by, sizes));
         }
         let contacts: Vec<usize> = modes.iter().map(|mode| mode.contact).collect();
         let contact_terms = self.contact_terms(&contacts, at).map_err(Reason::State)?;
@@ -117,11 +118,14 @@ impl Field<'_> {
         let impulses = factors(matrix)?.solve(&right).ok_or(Reason::ForcesNotUnique)?;
         for speed in 0..p {
             for d in 0..k {
-                let change: f64 = (0..rows.len()).map(|i| response(i, speed) * impulses[(i, d)]).sum();
-                by[(n + speed) * k + d] -= change;
+                let place = (n + speed) * k + d;
+                for change in (0..rows.len()).map(|i| response(i, speed) * impulses[(i, d)]) {
+                    by[place] -= change;
+                    sizes[place] += change.abs();
+                }
             }
         }
-        Ok(by)
+        Ok((by, sizes))
     }
 
     /// Derivatives of the friction of a sliding contact for a normal force of 1.

@@ -264,8 +264,9 @@ impl<'m> Propagation<'m> {
             closed::project(self.field.mechanism, &contacts, &state, &mut self.by, self.field.k)
                 .map_err(|why| (None, why))?;
             let held = self.field.project(&modes(first), &self.field.at_start(first, &self.by));
-            self.by = held.map_err(|why| (None, why))?;
-            sizes.iter_mut().zip(&self.by).for_each(|(size, by)| *size += by.abs());
+            let (held, terms) = held.map_err(|why| (None, why))?;
+            self.by = held;
+            sizes.iter_mut().zip(&terms).for_each(|(size, term)| *size += term);
         }
         match self
             .field

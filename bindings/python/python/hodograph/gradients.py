@@ -59,11 +59,13 @@ class Adjoint(NamedTuple):
 class Orbit:
     """A periodic motion: ``q``, ``u`` at its beginning, its ``period``, s; ``multipliers``, the greatest first, and whether all are within the unit circle
     (``stable``); ``matrix`` (n + p, n + p): derivatives of the state when it has returned by that at the beginning; ``by`` (n + p, v): by the variables asked
-    for; ``residual``: the relative difference of both states; ``events``: (time, kind, contact, q, u)."""
+    for; ``residual``: the relative difference of both states; ``events``: (time, kind, contact, q, u); ``nodes``: (time, q, u) at the beginning of
+    each segment of the period."""
 
     def __init__(self, found: dict[str, Any], coordinates: int) -> None:
         self.q: Floats = found["state"][:coordinates]
         self.u: Floats = found["state"][coordinates:]
+        self.nodes: list[tuple[float, Floats, Floats]] = [(time, state[:coordinates], state[coordinates:]) for time, state in found["nodes"]]
         self.period: float = found["period"]
         self.matrix: Floats = found["matrix"]
         self.by: Floats = found["by"]

@@ -561,28 +561,28 @@ class Mechanism(_native.Mechanism):
 
     def orbit(
         self, q: Rows = None, u: Rows = None, inputs: Rows = None, time: Optional[float] = None, *, period: Optional[float] = None,
-        event: Optional[str] = None, contact: Optional[str] = None, count: int = 1, reset: Sequence[str] = (), longest: float = 10.0,
+        event: Optional[str] = None, contact: Optional[str] = None, count: int = 1, reset: Sequence[str] = (), longest: float = 10.0, segments: int = 1,
         exchange: Optional[Mapping[str, str]] = None, by: Sequence[str] = (), mu: Optional[float] = None, e: Optional[float] = None, law: Optional[str] = None, tolerance: Optional[float] = None,
         surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None, max_step: Optional[float] = None,
     ) -> Orbit:
         """The periodic motion next to a state, as :class:`Orbit`. It returns after ``period`` s, or just after the ``count``-th ``event`` ('collision',
         'lift_off', 'slip', 'stick') at ``contact`` or any; coordinates of ``reset`` take their values of the start again then, after coordinates and speeds
         of ``exchange`` took the values of others (``{"q1": "q2", "q2": "q1"}`` of legs that change, "-q2" with the sign turned). ``longest``: s that are
-        waited for it. ``by``: variables of :meth:`gradient` for derivatives of the return."""
+        waited for it. ``segments``: parts of a period, in which the motion is sought at the same time, more of them where deviations grow much in it. ``by``: variables of :meth:`gradient` for derivatives of the return."""
         choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)
-        of = self._periodicity(period, event, contact, count, reset, exchange, longest, by)
+        of = self._periodicity(period, event, contact, count, reset, exchange, longest, segments, by)
         return Orbit(self._orbit((q, u, inputs, time), of, choices)["orbit"], len(self._names_of("coordinates")))
 
     def branch(
         self, variable: str, start: float, end: float, q: Rows = None, u: Rows = None, inputs: Rows = None, time: Optional[float] = None, *,
         period: Optional[float] = None, event: Optional[str] = None, contact: Optional[str] = None, count: int = 1, reset: Sequence[str] = (),
-        exchange: Optional[Mapping[str, str]] = None, longest: float = 10.0, points: int = 200, mu: Optional[float] = None, e: Optional[float] = None, law: Optional[str] = None,
+        exchange: Optional[Mapping[str, str]] = None, longest: float = 10.0, segments: int = 1, points: int = 200, mu: Optional[float] = None, e: Optional[float] = None, law: Optional[str] = None,
         tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None, max_step: Optional[float] = None,
     ) -> Branch:
         """Periodic motions through the values of a parameter, 'mu' or 'e' from ``start`` to ``end``, by at most ``points`` points, as :class:`Branch`; the
         other arguments are those of :meth:`orbit`."""
         choices = self._choices(surfaces, tolerance, max_step, mu=mu, e=e, law=law)
-        of = self._periodicity(period, event, contact, count, reset, exchange, longest, ())
+        of = self._periodicity(period, event, contact, count, reset, exchange, longest, segments, ())
         of.update(follow=(variable, number(start, "start"), number(end, "end")), points=points)
         found = self._orbit((q, u, inputs, time), of, choices)
         n = len(self._names_of("coordinates"))
@@ -590,9 +590,10 @@ class Mechanism(_native.Mechanism):
         orbits = [Orbit(orbit, n) for _, orbit in found["points"]]
         return Branch(np.array([value for value, _ in found["points"]]), orbits, changes, found["ended"])
 
-    def _periodicity(self, period: Any, event: Any, contact: Any, count: int, reset: Any, exchange: Any, longest: Any, by: Any) -> dict[str, Any]:
+    def _periodicity(self, period: Any, event: Any, contact: Any, count: int, reset: Any, exchange: Any, longest: Any, segments: int, by: Any) -> dict[str, Any]:
         return {
-            "period": optional_number(period, "period"), "event": event, "count": count, "longest": number(longest, "longest"), "by": list(by),
+            "period": optional_number(period, "period"), "event": event, "count": count, "longest": number(longest, "longest"),
+            "segments": segments, "by": list(by),
             "contact": None if contact is None else index("contact", contact, self._names_of("contacts")),
             "reset": [index("coordinate", name, self._names_of("coordinates")) for name in reset], "follow": None, "points": 1,
             "exchange": [f"{to}={source}" for to, source in (exchange or {}).items()],

@@ -47,6 +47,10 @@ pub struct Arguments {
     /// the longest period to wait for, s
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
     longest: f64,
+    /// segments of a period, in which the motion is sought at the same time: more of them where deviations grow much in a
+    /// period
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    segments: usize,
     /// a parameter (or mu, e, mu.CONTACT, e.CONTACT) and the range through which the motion is followed
     #[arg(long, value_name = "NAME=FROM..TO")]
     follow: Option<String>,
@@ -164,7 +168,7 @@ impl Arguments {
             }
             (None, None) => return Err(Stop::Call("give --period or --return".to_owned())),
         };
-        Ok(Periodic { returns, reset, symmetry, longest: self.longest })
+        Ok(Periodic { returns, reset, symmetry, longest: self.longest, segments: self.segments })
     }
 }
 
