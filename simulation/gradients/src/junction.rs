@@ -104,12 +104,12 @@ impl Field<'_> {
 
     /// Carries derivatives through the events at the end of a part. `by` are the derivatives of the state
     /// just before them, at the fixed time; `modes` are the modes during the part; `next` is the following
-    /// part; `since` is the time of the previous events.
+    /// part; `since` is the time of the previous events. `terms` sums up the magnitudes of the terms of derivatives.
     pub fn pass(
         &self,
         (part, next): (&SmoothPart, &SmoothPart),
         modes: &[Mode],
-        by: &[f64],
+        (by, terms): (&[f64], &mut [f64]),
         events: &[Event],
         since: f64,
     ) -> Result<EventDerivatives, NonDifferentiable> {
@@ -132,16 +132,19 @@ impl Field<'_> {
         let slopes = self.guard(part, modes, &self.at_end(part, &part.last, &along, &flow), since)?;
         let mut time: Vec<f64> = slopes.iter().map(|slope| -slope / slopes[k - 1]).collect();
         time[k - 1] = 0.0;
-        let (mut there, mut sizes) = (by.to_vec(), by.to_vec());
-        for ((row, size), rate) in there.chunks_exact_mut(k).zip(sizes.chunks_exact_mut(k)).zip(&before.rates)
+        let mut there = by.to_vec();
+        for (sum, rates) in terms.iter_mut().zip(&before.terms_by) {
+            *sum += rates * (part.end - since);
+        }
+        for ((row, terms), rate) in there.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).zip(&before.rates)
         {
-            for ((by, size), time) in row.iter_mut().zip(size).zip(&time) {
+            for ((by, sum), time) in row.iter_mut().zip(terms).zip(&time) {
+                *sum += by.abs() + (rate * time).abs();
                 *by += rate * time;
-                *size = size.abs() + (rate * time).abs();
             }
         }
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
-            self.check_stop(stopped, &self.at_end(part, &part.last, &there, &time), &sizes)?;
+            self.check_stop(stopped, &self.at_end(part, &part.last, &there, &time), terms)?;
         }
         let (mut now, mut after) = (there.clone(), Vec::with_capacity(events.len()));
         let mut collisions = Vec::new();
@@ -152,7 +155,8 @@ impl Field<'_> {
                 let contact = event.contact.unwrap_or(0);
                 let mut state = part.last[..self.n].to_vec();
                 state.extend_from_slice(&struck.speeds_before);
-                let found = self.collide(contact, struck, event, &self.at_end(part, &state, &now, &time));
+                let at = self.at_end(part, &state, &now, &time);
+                let found = self.collide(contact, struck, event, &at, terms);
                 let (speeds_by, struck) = found.map_err(|why| (Some(contact), why))?;
                 now[self.n * k..].copy_from_slice(&speeds_by);
                 collisions.push(struck);
@@ -167,14 +171,14 @@ impl Field<'_> {
         }
         let modes_after = self::modes(next);
         let going = self.mode_rates(&modes_after, &self.at_start(next, &now)).map_err(|why| (None, why))?;
-        for ((row, size), rate) in now.chunks_exact_mut(k).zip(sizes.chunks_exact_mut(k)).zip(&going.rates) {
-            for ((by, size), time) in row.iter_mut().zip(size).zip(&time) {
+        for ((row, terms), rate) in now.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).zip(&going.rates) {
+            for ((by, sum), time) in row.iter_mut().zip(terms).zip(&time) {
                 *by -= rate * time;
-                *size += (rate * time).abs();
+                *sum += (rate * time).abs();
             }
         }
         let apart =
-            self.separation(&modes_after, &self.at_start(next, &now), &sizes).map_err(|why| (None, why))?;
+            self.separation(&modes_after, &self.at_start(next, &now), terms).map_err(|why| (None, why))?;
         if let Some((contact, _, left)) = apart
             && left > TRANSVERSE_SLIP
         {
@@ -363,13 +367,14 @@ impl Field<'_> {
         Ok(())
     }
 
-    /// The derivatives of the speeds after an impact (p rows, k columns), and the impact.
+    /// The derivatives of the speeds after an impact (p rows, k columns), and the impact. `terms` as in [`Self::pass`].
     fn collide(
         &self,
         contact: usize,
         struck: &CollisionRecord,
         event: &Event,
         at: &At<'_>,
+        terms: &mut [f64],
     ) -> Result<(Vec<f64>, Struck), Reason> {
         let (n, p, k) = (self.n, self.p, self.k);
         let contact_terms = self.contact_terms(&[contact], at).map_err(Reason::State)?;
@@ -430,14 +435,16 @@ impl Field<'_> {
             }
             let mut speeds = at.by[n * k..].to_vec();
             for (d, by) in by.iter().enumerate() {
-                let impulse = impulse_by * SVector::<f64, ARGUMENTS>::from(*by);
+                let by = SVector::<f64, ARGUMENTS>::from(*by);
+                let (impulse, sizes) = (impulse_by * by, impulse_by.abs() * by.abs());
                 for speed in 0..p {
-                    let change = |axis: usize| {
+                    for axis in 0..3 {
                         let index = response(speed, axis);
-                        contact_terms.by(index)[d] * hit.impact.impulse[axis]
-                            + contact_terms.value(index) * impulse[axis]
-                    };
-                    speeds[speed * k + d] += change(0) + change(1) + change(2);
+                        let turned = contact_terms.by(index)[d] * hit.impact.impulse[axis];
+                        speeds[speed * k + d] += turned + contact_terms.value(index) * impulse[axis];
+                        terms[(n + speed) * k + d] +=
+                            turned.abs() + contact_terms.value(index).abs() * sizes[axis];
+                    }
                 }
             }
             let state = at.state.to_vec();

@@ -135,6 +135,8 @@ pub(crate) struct Propagation<'m> {
     tolerances: Tolerances,
     /// derivatives of the state: n + p rows, k columns
     by: Vec<f64>,
+    /// magnitudes of the terms that these were added up from: what closed contacts leave of them is rounding of these
+    terms: Vec<f64>,
     /// time of the previous events, s
     since: f64,
     pub motion: MotionGradient,
@@ -178,8 +180,10 @@ impl<'m> Propagation<'m> {
         start: &State<'_>,
         directions: Vec<Direction>,
     ) -> Self {
+        let by = seeds(mechanism, start, &directions);
         Propagation {
-            by: seeds(mechanism, start, &directions),
+            terms: by.iter().map(|by| by.abs()).collect(),
+            by,
             field: Field::new(mechanism, directions, followed.surfaces.clone(), followed.sampling),
             tolerances: followed.tolerances.clone(),
             since: followed.start,
@@ -256,7 +260,6 @@ impl<'m> Propagation<'m> {
             return Err((event.contact, Reason::StartInCollision));
         }
         let Some(first) = parts.first() else { return Ok(()) };
-        let mut sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
         if how == Start::Held {
             let contacts: Vec<usize> = first.closed.iter().map(|closed| closed.contact).collect();
             let (coordinates, speeds) = first.first.split_at(self.field.n);
@@ -266,11 +269,11 @@ impl<'m> Propagation<'m> {
             let held = self.field.project(&modes(first), &self.field.at_start(first, &self.by));
             let (held, terms) = held.map_err(|why| (None, why))?;
             self.by = held;
-            sizes.iter_mut().zip(&terms).for_each(|(size, term)| *size += term);
+            self.terms.iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term);
         }
         match self
             .field
-            .separation(&modes(first), &self.field.at_start(first, &self.by), &sizes)
+            .separation(&modes(first), &self.field.at_start(first, &self.by), &self.terms)
             .map_err(|why| (None, why))?
         {
             Some((contact, direction, left)) if left > MAX_SEPARATION => {
@@ -474,7 +477,7 @@ impl<'m> Propagation<'m> {
     }
 
     fn pass(
-        &self,
+        &mut self,
         part: &SmoothPart,
         next: &SmoothPart,
         events: &[Event],
@@ -490,7 +493,7 @@ impl<'m> Propagation<'m> {
                 }
             }
         }
-        self.field.pass((part, next), &modes, &self.by, events, self.since)
+        self.field.pass((part, next), &modes, (&self.by, &mut self.terms), events, self.since)
     }
 }
 
