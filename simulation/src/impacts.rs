@@ -133,7 +133,7 @@ impl Transition<'_> {
 
     /// The smallest normal velocity of a contact that is more than rounding, m/s, relative to the one that
     /// all kinetic energy so far would give it. A body at rest beside moving ones has only rounding errors.
-    fn slowest(&self, support: &ClosedContacts, place: usize) -> f64 {
+    pub(crate) fn slowest(&self, support: &ClosedContacts, place: usize) -> f64 {
         self.slowest_along(support, 3 * place)
     }
 

@@ -63,7 +63,9 @@ impl Scales {
             length = length.max(gaps);
         }
         if !known(length) {
-            length = if known(fall) { fall } else { 1.0 };
+            // A fall that disappears in the rounding of the place is that of a speed which is zero up to rounding.
+            let resolved = known(fall) && fall > f64::EPSILON * place;
+            length = if resolved { fall } else { 1.0 };
         }
         // The faster of falling and moving.
         let time = (length / acceleration).sqrt().min(length / speed);
@@ -95,6 +97,19 @@ mod tests {
         assert!(scales.length >= 1.0 && scales.length < 4.0, "{scales:?}");
         assert!((0.2..0.8).contains(&scales.time), "{scales:?}");
     }
+
+    #[test]
+    fn a_speed_of_rounding_defines_no_length() {
+        let rod = SlenderRod5dof::<f64>::default();
+        let start = |speed| {
+            let q: [f64; 5] = Coordinates { z: 0.0, q5: 0.0, ..Coordinates::default() }.into();
+            let u: [f64; 5] = Speeds { u1: speed, u2: 0.0, u3: 0.0, u4: 0.0, u5: 0.0 }.into();
+            let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+            Scales::of(&rod, &Angles::of(&rod), &state)
+        };
+        assert_eq!(start(3e-32).length, start(0.0).length);
+    }
+
     #[test]
     fn a_rod_on_the_floor_has_the_length_of_its_arm() {
         let rod = SlenderRod5dof::<f64>::default();

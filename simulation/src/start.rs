@@ -42,7 +42,7 @@ impl Transition<'_> {
             let fault = |error| self.failure(Failure::State(error));
             let support = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
             let rate = support.velocity[0];
-            let rounding = 1e-9 * support.velocity_size(0, state.speeds);
+            let rounding = (1e-9 * support.velocity_size(0, state.speeds)).max(self.slowest(&support, 0));
             let rounding = self.unseen(&support, 0, state.speeds, rounding)?;
             if rate < -rounding {
                 // A contact with a small open gap closes by itself later.

@@ -57,7 +57,11 @@ impl Closed {
     ) -> Result<(), Reason> {
         let (coordinates, speeds) = state.split_at_mut(start.coordinates.len());
         close(mechanism, &self.contacts, coordinates, &State { speeds, ..*start })?;
-        self.hold(mechanism, &State { coordinates, ..*start }, speeds)
+        // Twice: what the first projection leaves is rounding of its change, which may be large.
+        for _ in 0..2 {
+            self.hold(mechanism, &State { coordinates, ..*start }, speeds)?;
+        }
+        Ok(())
     }
 
     fn hold(
