@@ -136,11 +136,10 @@ impl Field<'_> {
         for (sum, rates) in terms.iter_mut().zip(&before.terms_by) {
             *sum += rates * (part.end - since);
         }
-        for ((row, terms), rate) in there.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).zip(&before.rates)
-        {
-            for ((by, sum), time) in row.iter_mut().zip(terms).zip(&time) {
-                *sum += by.abs() + (rate * time).abs();
-                *by += rate * time;
+        for (index, (row, sums)) in there.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).enumerate() {
+            for ((by, sum), time) in row.iter_mut().zip(sums).zip(&time) {
+                *sum += by.abs() + before.terms[index] * time.abs();
+                *by += before.rates[index] * time;
             }
         }
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
@@ -171,10 +170,10 @@ impl Field<'_> {
         }
         let modes_after = self::modes(next);
         let going = self.mode_rates(&modes_after, &self.at_start(next, &now)).map_err(|why| (None, why))?;
-        for ((row, terms), rate) in now.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).zip(&going.rates) {
-            for ((by, sum), time) in row.iter_mut().zip(terms).zip(&time) {
-                *by -= rate * time;
-                *sum += (rate * time).abs();
+        for (index, (row, sums)) in now.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).enumerate() {
+            for ((by, sum), time) in row.iter_mut().zip(sums).zip(&time) {
+                *by -= going.rates[index] * time;
+                *sum += going.terms[index] * time.abs();
             }
         }
         let apart =

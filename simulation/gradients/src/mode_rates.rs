@@ -21,7 +21,8 @@ pub(crate) struct ModeRates {
     /// rates of coordinates and speeds, and their derivatives (n + p rows, k columns)
     pub rates: Vec<f64>,
     pub rates_by: Vec<f64>,
-    /// magnitudes of the terms of these derivatives
+    /// magnitudes of the terms of the rates, and of those of their derivatives
+    pub terms: Vec<f64>,
     pub terms_by: Vec<f64>,
     /// along n, t, s of each closed contact, N
     pub forces: Vec<[Number; 3]>,
@@ -39,12 +40,13 @@ impl Field<'_> {
         let contact_terms = self.contact_terms(&contacts, at).map_err(Reason::State)?;
         let mut rates: Vec<f64> = (0..n + p).map(|index| contact_terms.value(index)).collect();
         let mut rates_by: Vec<f64> = (0..n + p).flat_map(|index| contact_terms.by(index).to_vec()).collect();
+        let mut terms: Vec<f64> = rates.iter().map(|rate| rate.abs()).collect();
         let mut terms_by: Vec<f64> = rates_by.iter().map(|by| by.abs()).collect();
         let nothing = || Number { value: 0.0, by: vec![0.0; k] };
         let mut forces: Vec<[Number; 3]> = modes.iter().map(|_| [nothing(), nothing(), nothing()]).collect();
         let directions = Field::directions(modes, &contact_terms, speeds);
         if modes.is_empty() {
-            return Ok(ModeRates { rates, rates_by, terms_by, forces, directions, contact_terms });
+            return Ok(ModeRates { rates, rates_by, terms, terms_by, forces, directions, contact_terms });
         }
         let balance = self.balance(modes, &contact_terms, speeds)?;
         let Balance { unknowns, columns, lambda, pushed, solver, .. } = &balance;
@@ -79,6 +81,7 @@ impl Field<'_> {
         let lambda_by = solver.solve(&right_by).ok_or(Reason::State(StateError::NotFinite))?;
         for speed in 0..p {
             rates[n + speed] += pushed[speed];
+            terms[n + speed] += (0..m).map(|j| (columns[j][speed] * lambda[j]).abs()).sum::<f64>();
             for d in 0..k {
                 let more = (0..m).map(|j| columns[j][speed] * lambda_by[(j, d)]);
                 let (by, terms) = (&mut rates_by[(n + speed) * k + d], &mut terms_by[(n + speed) * k + d]);
@@ -95,7 +98,7 @@ impl Field<'_> {
             }
             forces[unknown.place][unknown.axis] = own;
         }
-        Ok(ModeRates { rates, rates_by, terms_by, forces, directions, contact_terms })
+        Ok(ModeRates { rates, rates_by, terms, terms_by, forces, directions, contact_terms })
     }
 
     /// Derivatives of a state in which the derivatives of the speeds are projected, with the least kinetic
