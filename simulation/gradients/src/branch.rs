@@ -194,7 +194,13 @@ fn bordered(matrix: &DMatrix<f64>, by: &DMatrix<f64>, scale: &[f64], row: &DVect
     let (all, n) = (matrix.nrows(), scale.len() - 1);
     DMatrix::from_fn(all + 1, all + 1, |i, j| match (i == all, j == all) {
         (true, true) => row[n],
-        (true, false) => if j < n { row[j] } else { 0.0 },
+        (true, false) => {
+            if j < n {
+                row[j]
+            } else {
+                0.0
+            }
+        }
         (false, true) => by[(i, 0)] * scale[n] / scale[i % n],
         (false, false) => matrix[(i, j)] * scale[j % n] / scale[i % n],
     })
@@ -221,11 +227,11 @@ impl Family<'_> {
         ask(&Task { mechanism: &mechanism, start, options: &options, periodic, by: &by, nodes })
     }
 
-    fn returned(&self, nodes: &Nodes, states: &[f64], value: f64) -> Result<Returned, OrbitError> {
+    /// The return from these states, which are moved so that closed contacts stay closed.
+    fn returned(&self, nodes: &Nodes, states: &mut [f64], value: f64) -> Result<Returned, OrbitError> {
         self.with(nodes, value, |task| {
-            let mut states = states.to_vec();
-            task.close(&mut states)?;
-            task.returned(&states)
+            task.close(states)?;
+            task.returned(states)
         })
     }
 
@@ -243,7 +249,7 @@ impl Family<'_> {
         let mut value = ahead(n, from.value);
         let mut before = f64::INFINITY;
         for _ in 0..NEWTON_STEPS {
-            let here = self.returned(&nodes, &states, value)?;
+            let here = self.returned(&nodes, &mut states, value)?;
             if here.residual <= TOLERANCE && (here.residual >= 0.5 * before || here.residual < 1e-14) {
                 let found = Found { states, returned: here, nodes };
                 return Ok(Point::new(found, value, scale, &from.tangent));
@@ -252,7 +258,10 @@ impl Family<'_> {
             let all = states.len();
             // The correction is perpendicular to the tangent.
             let mut right = DVector::zeros(all + 1);
-            here.difference().iter().enumerate().for_each(|(place, off)| right[place] = -off / scale[place % n]);
+            here.difference()
+                .iter()
+                .enumerate()
+                .for_each(|(place, off)| right[place] = -off / scale[place % n]);
             let matrix = bordered(&here.jacobian(), &here.by_variables(), scale, &from.tangent);
             let change = solve(&matrix, &right);
             states
@@ -261,7 +270,7 @@ impl Family<'_> {
                 .for_each(|(place, value)| *value += change[place] * scale[place % n]);
             value += change[all] * scale[n];
         }
-        let here = self.returned(&nodes, &states, value)?;
+        let here = self.returned(&nodes, &mut states, value)?;
         if here.residual > TOLERANCE {
             return Err(OrbitError::NotFound(here.residual));
         }

@@ -5,6 +5,7 @@
 
 use hodograph::{ComponentKind, Contacts, Mechanism, State};
 use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::{ContactPhase, Simulation};
 use nalgebra::{DMatrix, DVector};
 
 use crate::Reason;
@@ -29,6 +30,7 @@ pub(crate) struct Closed {
 }
 
 impl Closed {
+    /// The contacts of a start state that is given by hand.
     pub fn new(mechanism: &InterpretedMechanism, start: &State<'_>) -> Self {
         let size = |numbers: &[f64]| numbers.iter().fold(1e-3_f64, |size, value| size.max(value.abs()));
         let (far, fast) = (CLOSED * size(start.coordinates), CLOSED * size(start.speeds));
@@ -43,6 +45,21 @@ impl Closed {
                 let sticks = state.velocity.amax() <= fast;
                 closed.held.push((contact, if sticks { 3 } else { 1 }));
             }
+        }
+        closed
+    }
+
+    /// The contacts that are closed in a motion now.
+    pub fn of(simulation: &Simulation<'_>) -> Self {
+        let mut closed = Closed { contacts: Vec::new(), held: Vec::new() };
+        for contact in 0..simulation.mechanism().count(ComponentKind::Contact) {
+            let axes = match simulation.phase(contact) {
+                Some(ContactPhase::Stick) => 3,
+                Some(ContactPhase::Slide) => 1,
+                _ => continue,
+            };
+            closed.contacts.push(contact);
+            closed.held.push((contact, axes));
         }
         closed
     }

@@ -186,7 +186,9 @@ impl<'a> Task<'a> {
             matrix.set_column(place, &derivative.column(column));
         }
         let by = derivative.columns(variables.len(), self.by.len()).into_owned();
-        let events = found.events.into_iter().map(|event| event.event).collect();
+        // What a node tells of its contacts is no event of the motion.
+        let told = |event: &Event| time > self.start.time && event.time <= time;
+        let events = found.events.into_iter().map(|event| event.event).filter(|event| !told(event)).collect();
         Ok(Segment { end, time: until, events, matrix, by })
     }
 
@@ -242,14 +244,8 @@ impl<'a> Task<'a> {
             let Some((node, state)) = before else { continue };
             let mut simulation = self.simulation(&self.state(node.time, state))?;
             simulation.advance_to(time).map_err(|error| OrbitError::Gradient(error.into()))?;
-            let at = State {
-                time,
-                coordinates: simulation.coordinates(),
-                speeds: simulation.speeds(),
-                inputs: self.start.inputs,
-            };
-            nodes.push(Node { time, closed: Closed::new(self.mechanism, &at) });
-            all.extend(at.coordinates.iter().chain(at.speeds));
+            nodes.push(Node { time, closed: Closed::of(&simulation) });
+            all.extend(simulation.coordinates().iter().chain(simulation.speeds()));
         }
         Ok((Nodes(nodes), all))
     }
@@ -342,7 +338,16 @@ impl Returned {
         let mut multipliers: Vec<Complex<f64>> = matrix.complex_eigenvalues().iter().copied().collect();
         multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         let nodes = nodes.with(states).map(|(node, state)| (node.time, state.to_vec())).collect();
-        Orbit { state: states[..n].to_vec(), nodes, period, events, matrix, multipliers, by: all_by, residual }
+        Orbit {
+            state: states[..n].to_vec(),
+            nodes,
+            period,
+            events,
+            matrix,
+            multipliers,
+            by: all_by,
+            residual,
+        }
     }
 }
 

@@ -231,7 +231,12 @@ impl Hopper {
     }
 
     /// Derivatives of the state at a time, and of the times of the events up to there: a column for each variable.
-    pub fn derivatives(&self, state: &[Number; 6], until: Number, by: &[Variable]) -> Vec<(Vec<f64>, Vec<f64>)> {
+    pub fn derivatives(
+        &self,
+        state: &[Number; 6],
+        until: Number,
+        by: &[Variable],
+    ) -> Vec<(Vec<f64>, Vec<f64>)> {
         let h = number(1e-10);
         let moved = |variable: Variable, h: Number| {
             let (mut hopper, mut state) = (*self, *state);

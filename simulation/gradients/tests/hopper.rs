@@ -28,18 +28,21 @@ fn precise() -> Options {
 fn twenty_events_beside_doubled_digits() {
     let mechanism = read("driven_hopper.mech");
     let state = [0.0, 0.004, 0.29, 0.1, 0.2, -0.1];
-    let (until, variables) = (1.06, [
-        (By::Coordinate(1), Variable::State(1)),
-        (By::Coordinate(2), Variable::State(2)),
-        (By::Speed(0), Variable::State(3)),
-        (By::Speed(1), Variable::State(4)),
-        (By::Speed(2), Variable::State(5)),
-        (By::Parameter(0), Variable::Parameter(0)),
-        (By::Parameter(4), Variable::Parameter(4)),
-        (By::Parameter(5), Variable::Parameter(5)),
-        (By::Parameter(7), Variable::Parameter(7)),
-        (By::Friction(None), Variable::Friction),
-    ]);
+    let (until, variables) = (
+        1.06,
+        [
+            (By::Coordinate(1), Variable::State(1)),
+            (By::Coordinate(2), Variable::State(2)),
+            (By::Speed(0), Variable::State(3)),
+            (By::Speed(1), Variable::State(4)),
+            (By::Speed(2), Variable::State(5)),
+            (By::Parameter(0), Variable::Parameter(0)),
+            (By::Parameter(4), Variable::Parameter(4)),
+            (By::Parameter(5), Variable::Parameter(5)),
+            (By::Parameter(7), Variable::Parameter(7)),
+            (By::Friction(None), Variable::Friction),
+        ],
+    );
     let (by, of): (Vec<By>, Vec<Variable>) = variables.into_iter().unzip();
     let start = State { time: 0.0, coordinates: &state[..3], speeds: &state[3..], inputs: &[] };
     let found = differentiate(&mechanism, &start, precise(), &by, &[until]).unwrap();
@@ -71,7 +74,14 @@ fn twenty_events_beside_doubled_digits() {
             worst[3] = worst[3].max((time - exact).abs() / size(of_times));
         }
     }
-    println!("{} events: state {:e}, times {:e}, derivatives of the state {:e}, of times {:e}", names.len(), worst[0], worst[1], worst[2], worst[3]);
+    println!(
+        "{} events: state {:e}, times {:e}, derivatives of the state {:e}, of times {:e}",
+        names.len(),
+        worst[0],
+        worst[1],
+        worst[2],
+        worst[3]
+    );
     assert!(worst[2] < 1e-10 && worst[3] < 1e-10, "{worst:?}");
 }
 
@@ -83,8 +93,13 @@ fn a_driven_hopper_hops_periodically() {
     let start = State { time: 0.0, coordinates: &[0.0, 0.0, 0.28], speeds: &[0.0; 3], inputs: &[] };
     let hopper = doubled(&mechanism);
     for segments in [1, 3] {
-        let periodic =
-            Periodic { returns: Return::After(period), reset: vec![0], symmetry: Vec::new(), longest: 1.0, segments };
+        let periodic = Periodic {
+            returns: Return::After(period),
+            reset: vec![0],
+            symmetry: Vec::new(),
+            longest: 1.0,
+            segments,
+        };
         let orbit = find_orbit(&mechanism, &start, &precise(), &periodic, &[]).unwrap();
         let state: [f64; 6] = orbit.state.clone().try_into().unwrap();
         // Newton's method for the length of the leg and its rate, in doubled digits.
@@ -98,12 +113,16 @@ fn a_driven_hopper_hops_periodically() {
             let inverse = matrix.try_inverse().unwrap();
             let off = [end[2] - state[2], end[5] - state[5]];
             for (row, place) in [2, 5].into_iter().enumerate() {
-                state[place] = state[place]
-                    - (number(inverse[(row, 0)]) * off[0] + number(inverse[(row, 1)]) * off[1]);
+                state[place] =
+                    state[place] - (number(inverse[(row, 0)]) * off[0] + number(inverse[(row, 1)]) * off[1]);
             }
         }
         let (_, events) = hopper.motion(&state, number(period));
-        println!("{:?} {:?}", orbit.state, events.iter().map(|(t, name)| (t.rounded(), *name)).collect::<Vec<_>>());
+        println!(
+            "{:?} {:?}",
+            orbit.state,
+            events.iter().map(|(t, name)| (t.rounded(), *name)).collect::<Vec<_>>()
+        );
         for (place, exact) in [(2, state[2]), (5, state[5])] {
             let off = (orbit.state[place] - exact.rounded()).abs();
             assert!(off < 1e-13, "{place}: {off:e}");

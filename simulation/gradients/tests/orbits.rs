@@ -5,6 +5,7 @@ use hodograph_gradients::{
     By, ChangeKind, Exchange, OrbitError, Periodic, Return, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::Options;
 use nalgebra::DMatrix;
 
 use compass::Compass;
@@ -27,7 +28,8 @@ fn a_rimless_wheel_rolls_downhill() {
     let (q, u) = ([0.0, l * alpha.cos(), -alpha], [l * rate * alpha.cos(), l * rate * alpha.sin(), rate]);
     let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
     let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
-    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0, segments: 1 };
+    let periodic =
+        Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0, segments: 1 };
     let by = [By::Parameter(4)];
     let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
     assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
@@ -56,7 +58,8 @@ fn a_walker_with_curved_feet() {
     let (q, u) = ([0.0, a, -alpha], [rate * a, rate * b, rate]);
     let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
     let returns = Return::At { event: "collision".to_owned(), contact: Some(1), count: 1 };
-    let periodic = Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0, segments: 1 };
+    let periodic =
+        Periodic { returns, reset: vec![0, 1, 2], symmetry: Vec::new(), longest: 5.0, segments: 1 };
     let by = [By::Parameter(5)];
     let orbit = find_orbit(&mechanism, &start, &options(2.0, 0.0, Law::Poisson), &periodic, &by).unwrap();
     assert!((orbit.state[5] - w).abs() < 1e-11, "{} instead of {w}", orbit.state[5]);
@@ -358,6 +361,13 @@ fn a_compass_walks_downhill() {
                 orbit.state[place]
             );
         }
+        // The same in three segments.
+        let divided = Periodic { segments: 3, ..stride(&mechanism) };
+        let divided = find_orbit(&mechanism, &start, &options, &divided, &[]).unwrap();
+        assert!((divided.period - orbit.period).abs() < 1e-11 * loss && divided.nodes.len() == 3);
+        for (one, other) in orbit.state.iter().zip(&divided.state) {
+            assert!((one - other).abs() < 1e-11 * loss, "{one} {other}");
+        }
         assert!(
             (orbit.period - period).abs() < 1e-11 * loss
                 && orbit.is_stable()
@@ -382,6 +392,110 @@ fn a_compass_walks_downhill() {
     }
 }
 
+/// A block that is pushed away from a place with k x, and returns to it only if it stays there: deviations grow by
+/// exp((k / m)^(1/2) T) in a period, 1e10 here. One motion over the whole period does not know its own start any more; in
+/// four segments they grow by 316.
+#[test]
+fn deviations_that_grow_much_need_segments() {
+    let mut mechanism = read("block_on_spring.mech");
+    let (m, k, period) = (2.0_f64, 50.0_f64, 4.6);
+    mechanism.set_parameter_values(&[m, -k, 0.0]).unwrap();
+    let start = State { time: 0.0, coordinates: &[0.1, 1.0], speeds: &[-0.05, 0.0], inputs: &[] };
+    let options = options(0.0, 0.0, Law::Newton);
+    let find = |segments| {
+        let returns = Return::After(period);
+        let periodic = Periodic { returns, reset: vec![1], symmetry: Vec::new(), longest: 1.0, segments };
+        find_orbit(&mechanism, &start, &options, &periodic, &[])
+    };
+    let orbit = find(4).unwrap();
+    println!("{orbit:?}");
+    assert!(orbit.state[0].abs() < 1e-12 && orbit.state[2].abs() < 1e-12 && orbit.nodes.len() == 4);
+    let growth = ((k / m).sqrt() * period).exp();
+    assert!((orbit.multipliers[0].re / growth - 1.0).abs() < 1e-10, "{:?} {growth}", orbit.multipliers);
+    let none = Periodic {
+        returns: Return::After(period),
+        reset: vec![1],
+        symmetry: Vec::new(),
+        longest: 1.0,
+        segments: 0,
+    };
+    let found = find_orbit(&mechanism, &start, &options, &none, &[]);
+    assert!(matches!(found, Err(OrbitError::BadRequest(_))), "{found:?}");
+}
+
+/// The woodpecker's cycle: the bird swings, the sleeve jams on the pole, slips and is free, the beak strikes, the other edge
+/// stops the sleeve. Its one multiplier beside differences of the motion, in one segment and in several; through mu it
+/// doubles its period.
+#[test]
+fn a_woodpecker_pecks_down_its_pole() {
+    let mechanism = read("woodpecker.mech");
+    let (q, u) = ([0.0, -0.10090092472062445, -0.44576], [0.0, 0.0, -1.1257]);
+    let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+    let options = Options::default();
+    let returns = Return::At { event: "stick".to_owned(), contact: Some(1), count: 1 };
+    let periodic = Periodic { returns, reset: vec![0], symmetry: Vec::new(), longest: 1.0, segments: 1 };
+    let orbit = find_orbit(&mechanism, &start, &options, &periodic, &[]).unwrap();
+    let names = |orbit: &hodograph_gradients::Orbit| -> Vec<&'static str> {
+        orbit.events.iter().map(|event| event.kind.name()).filter(|name| *name != "contact").collect()
+    };
+    let expected = ["slip", "lift_off", "collision", "collision", "slip", "lift_off", "collision", "stick"];
+    assert_eq!(names(&orbit), expected);
+    for segments in [2, 5] {
+        let found = find_orbit(&mechanism, &start, &options, &Periodic { segments, ..periodic.clone() }, &[]);
+        let found = found.unwrap();
+        assert_eq!(names(&found), expected);
+        let off = orbit.state.iter().zip(&found.state).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-10 && (orbit.period - found.period).abs() < 1e-12, "{segments} {off:e}");
+        let off = (orbit.multipliers[0] - found.multipliers[0]).norm();
+        assert!(off < 1e-10, "{segments} {off:e}");
+    }
+    // The angle of the bird and its rate when the sleeve comes to rest again, from other ones.
+    let again = |qb: f64, ub: f64| {
+        let (q, u) = ([0.0, orbit.state[1], qb], [0.0, 0.0, ub]);
+        let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+        let mut simulation =
+            hodograph_simulation::Simulation::new(&mechanism, &start, options.clone()).unwrap();
+        loop {
+            match simulation.advance(1.0).unwrap() {
+                hodograph_simulation::Progress::Event(event)
+                    if event.kind.name() == "stick" && event.contact == Some(1) =>
+                {
+                    return [event.coordinates[2], event.speeds[2]];
+                }
+                hodograph_simulation::Progress::Event(_) => {}
+                hodograph_simulation::Progress::Reached => panic!("the sleeve does not come to rest"),
+            }
+        }
+    };
+    let difference = DMatrix::from_fn(2, 2, |row, column| {
+        let h = [1e-5, 1e-3][column];
+        let moved = |h: f64| {
+            let mut state = [orbit.state[2], orbit.state[5]];
+            state[column] += h;
+            again(state[0], state[1])[row]
+        };
+        (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h)
+    });
+    // The map has one direction: its determinant vanishes, and the multiplier is the trace.
+    println!("{:?} {} {}", orbit.multipliers, difference.trace(), difference.determinant());
+    assert!((orbit.multipliers[0].re - difference.trace()).abs() < 1e-7, "{}", difference.trace());
+    assert!(orbit.multipliers[1..].iter().all(|other| other.norm() < 1e-9) && orbit.is_stable());
+    let (q, u) = ([0.0, orbit.state[1], -0.47278], [0.0, 0.0, -4.6]);
+    let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+    let branch =
+        follow_branch(&mechanism, &start, &options, &periodic, (By::Friction(None), 0.306, 0.3084), 80);
+    let branch = branch.unwrap();
+    println!(
+        "{} points, {:?}, {:?}",
+        branch.points.len(),
+        branch.changes.first().map(|c| c.at.value),
+        branch.ended
+    );
+    let [change] = &branch.changes[..] else { panic!("{:?}", branch.changes) };
+    assert_eq!(change.kind, ChangeKind::PeriodDoubling);
+    assert!((change.at.value - 0.308_294).abs() < 1e-6, "{}", change.at.value);
+}
+
 /// Exchanges that are no symmetry of any state.
 #[test]
 fn impossible_exchanges_are_refused() {
@@ -404,7 +518,8 @@ fn the_step_of_a_compass_doubles_its_period() {
     let start = State { time: 0.0, coordinates: &coordinates, speeds: &speeds, inputs: &[] };
     let options = options(2.0, 0.0, Law::Poisson);
     let range = (By::Parameter(5), 3.0_f64.to_radians(), 0.08);
-    let found = follow_branch(&mechanism, &start, &options, &stride(&mechanism), range, 60);
+    let divided = Periodic { segments: 2, ..stride(&mechanism) };
+    let found = follow_branch(&mechanism, &start, &options, &divided, range, 60);
     let branch = found.unwrap();
     println!("{} points, ended {:?}", branch.points.len(), branch.ended);
     for change in &branch.changes {
