@@ -251,6 +251,12 @@ def test_a_compass_walks_as_its_legs_change():
     step = compass.orbit(exchange=legs, **walk)
     assert step.period == pytest.approx(0.734346391159, abs=1e-10) and step.stable
     assert step.multipliers[2].real == pytest.approx(0.131572624, abs=1e-8)
+    divided = compass.orbit(exchange=legs, segments=3, **walk)
+    assert divided.period == pytest.approx(step.period, abs=1e-11) and len(divided.nodes) == 3
+    time, q, u = divided.nodes[1]
+    assert 0 < time < step.period and q.shape == (4,) and u.shape == (4,)
+    with pytest.raises(hodograph.ArgumentError, match="at least one segment"):
+        compass.orbit(exchange=legs, segments=0, **walk)
     with pytest.raises(hodograph.ArgumentError, match="no coordinate or independent speed `q7`"):
         compass.orbit(exchange={"q1": "-q7"}, **walk)
 
