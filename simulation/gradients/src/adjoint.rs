@@ -11,7 +11,6 @@ use nalgebra::DVector;
 
 use crate::field::{Direction, Field};
 use crate::followed::Followed;
-use crate::junction::modes;
 use crate::modes::Mode;
 use crate::motion::{Piece, Propagation, Start, seeds};
 use crate::transposed::{ModeTape, Place, TransposedField};
@@ -220,12 +219,12 @@ impl<'m> Adjoint<'m> {
             _ if still => Ok(()),
             Piece::Step { part, t, h, state } => {
                 let part = &self.followed.parts[*part];
-                let mut rates = Rates { field, modes: modes(part), part, tapes: Vec::new() };
+                let mut rates = Rates { modes: field.field.modes(part), field, part, tapes: Vec::new() };
                 transpose(&mut rates, (*t, state), *h, weights).map_err(|why| (*t, why))
             }
             Piece::Straight { part, time } => {
                 let part = &self.followed.parts[*part];
-                let mut rates = Rates { field, modes: modes(part), part, tapes: Vec::new() };
+                let mut rates = Rates { modes: field.field.modes(part), field, part, tapes: Vec::new() };
                 let mut change = vec![0.0; weights.len()];
                 let found = rates.rates(0, part.start, &part.first, &mut change);
                 let of_rates: Vec<f64> = weights.iter().map(|weight| time * weight).collect();

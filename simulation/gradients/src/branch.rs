@@ -1,7 +1,7 @@
 //! Follows a periodic motion through the values of a parameter, and locates the points where the branch or
 //! its stability changes.
 //!
-//! Theory: docs/theory.md, section 20.
+//! Theory: docs/theory.md, section 20.3.
 
 use hodograph::State;
 use hodograph_interpreter::InterpretedMechanism;

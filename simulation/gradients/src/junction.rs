@@ -75,15 +75,6 @@ pub(crate) const ARGUMENTS: usize = 11;
 /// Rows and columns of the entries of the reduced matrix among these arguments.
 pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// The modes during a part.
-pub(crate) fn modes(part: &SmoothPart) -> Vec<Mode> {
-    let mode = |closed: &hodograph_simulation::ClosedPart| Mode {
-        contact: closed.contact,
-        kind: closed.slides.map_or(ModeKind::Stick, ModeKind::Slide),
-    };
-    part.closed.iter().map(mode).collect()
-}
-
 impl Field<'_> {
     /// The state at the start of a part, with its derivatives.
     pub fn at_start<'a>(&self, part: &'a SmoothPart, by: &'a [f64]) -> At<'a> {
@@ -168,7 +159,7 @@ impl Field<'_> {
         if off > SPEED_AGREEMENT {
             return Err((None, Reason::Inaccurate(off)));
         }
-        let modes_after = self::modes(next);
+        let modes_after = self.modes(next);
         let going = self.mode_rates(&modes_after, &self.at_start(next, &now)).map_err(|why| (None, why))?;
         for (index, (row, sums)) in now.chunks_exact_mut(k).zip(terms.chunks_exact_mut(k)).enumerate() {
             for ((by, sum), time) in row.iter_mut().zip(sums).zip(&time) {

@@ -3,8 +3,9 @@
 //!
 //! Theory: docs/theory.md, section 19.1.
 
-use hodograph::StateError;
 use hodograph::generated::hypot;
+use hodograph::{Contacts, Mechanism, State, StateError};
+use hodograph_simulation::{ClosedPart, SmoothPart};
 use nalgebra::{DMatrix, DVector, Dyn, FullPivLU};
 
 use crate::Reason;
@@ -14,8 +15,12 @@ use crate::field::{ContactTerms, Field};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ModeKind {
     Stick,
-    /// sliding; the direction is used if slip is too small to have one
-    Slide([f64; 2]),
+    Slide {
+        /// the direction in which slip began
+        began: [f64; 2],
+        /// slip up to this speed, m/s, has no direction of its own, and takes that in which it began
+        slow: f64,
+    },
     /// sliding in this direction, independent of the present slip
     Along([f64; 2]),
 }
@@ -27,7 +32,8 @@ pub(crate) struct Mode {
     pub kind: ModeKind,
 }
 
-/// Slip below this part of the terms of the contact velocity has no direction of its own.
+/// Slip below this part of the terms of the contact velocity, or of the velocity that all kinetic energy would give the
+/// contact, has no direction of its own.
 const NO_DIRECTION: f64 = 1e-10;
 /// Relative to the greatest mobility of all contacts: an axis with less mobility cannot move.
 const IMMOBILE: f64 = 1e-13;
@@ -83,6 +89,28 @@ impl Balance {
 }
 
 impl Field<'_> {
+    /// The modes during a part.
+    pub fn modes(&self, part: &SmoothPart) -> Vec<Mode> {
+        let at = |time, state: &[f64], ask: &dyn Fn(&State<'_>) -> Option<f64>| {
+            let (coordinates, speeds) = state.split_at(self.n);
+            ask(&State { time, coordinates, speeds, inputs: &part.inputs }).unwrap_or(0.0)
+        };
+        let energy = |state: &State<'_>| self.mechanism.kinetic_energy(state).ok();
+        let kind = |closed: &ClosedPart| match closed.slides {
+            None => ModeKind::Stick,
+            Some(began) => {
+                let mobility = |state: &State<'_>| {
+                    let reduced = self.mechanism.contact_state(closed.contact, state).ok()?.reduced;
+                    Some(reduced.tt.max(reduced.ss))
+                };
+                let energy = at(part.start, &part.first, &energy).max(at(part.end, &part.last, &energy));
+                let greatest = 2.0 * energy * at(part.start, &part.first, &mobility);
+                ModeKind::Slide { began, slow: NO_DIRECTION * greatest.max(0.0).sqrt() }
+            }
+        };
+        part.closed.iter().map(|closed| Mode { contact: closed.contact, kind: kind(closed) }).collect()
+    }
+
     /// The forces in these modes.
     pub fn balance(
         &self,
@@ -180,12 +208,12 @@ fn direction(
     match kind {
         ModeKind::Stick => None,
         ModeKind::Along(direction) => Some((direction, None)),
-        ModeKind::Slide(began) => {
+        ModeKind::Slide { began, slow } => {
             let slip = [1, 2].map(|axis| contact_terms.value(contact_terms.velocity(place, axis)));
             let speed = hypot(slip[0], slip[1]);
             let size =
                 (0..3).map(|axis| contact_terms.velocity_size(place, axis, speeds)).fold(0.0, f64::max);
-            if speed > NO_DIRECTION * size {
+            if speed > slow.max(NO_DIRECTION * size) {
                 Some((slip.map(|part| part / speed), Some(speed)))
             } else {
                 Some((began, None))

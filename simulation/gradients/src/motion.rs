@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::field::{At, Direction, Field};
 use crate::followed::{Followed, GradientError, Sample};
-use crate::junction::{EventDerivatives, Junction, NonDifferentiable, modes};
+use crate::junction::{EventDerivatives, Junction, NonDifferentiable};
 use crate::modes::{Mode, ModeKind};
 use crate::{By, Reason, Undefined, closed};
 
@@ -260,20 +260,21 @@ impl<'m> Propagation<'m> {
             return Err((event.contact, Reason::StartInCollision));
         }
         let Some(first) = parts.first() else { return Ok(()) };
+        let modes = self.field.modes(first);
         if how == Start::Held {
             let contacts: Vec<usize> = first.closed.iter().map(|closed| closed.contact).collect();
             let (coordinates, speeds) = first.first.split_at(self.field.n);
             let state = State { time: first.start, coordinates, speeds, inputs: &first.inputs };
             closed::project(self.field.mechanism, &contacts, &state, &mut self.by, self.field.k)
                 .map_err(|why| (None, why))?;
-            let held = self.field.project(&modes(first), &self.field.at_start(first, &self.by));
+            let held = self.field.project(&modes, &self.field.at_start(first, &self.by));
             let (held, terms) = held.map_err(|why| (None, why))?;
             self.by = held;
             self.terms.iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term);
         }
         match self
             .field
-            .separation(&modes(first), &self.field.at_start(first, &self.by), &self.terms)
+            .separation(&modes, &self.field.at_start(first, &self.by), &self.terms)
             .map_err(|why| (None, why))?
         {
             Some((contact, direction, left)) if left > MAX_SEPARATION => {
@@ -323,7 +324,7 @@ impl<'m> Propagation<'m> {
         end: f64,
     ) -> Result<(), (f64, Reason)> {
         let (of, part) = part;
-        let modes = modes(part);
+        let modes = self.field.modes(part);
         let count = part.first.len();
         let mut y = part.first.clone();
         y.extend_from_slice(&self.by);
@@ -482,7 +483,7 @@ impl<'m> Propagation<'m> {
         next: &SmoothPart,
         events: &[Event],
     ) -> Result<EventDerivatives, NonDifferentiable> {
-        let mut modes = modes(part);
+        let mut modes = self.field.modes(part);
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
             // Slip is zero at its end, so it takes the direction shortly before.
             let at = self.field.at_start(part, &self.by);

@@ -28,7 +28,8 @@ pub(crate) struct Place<'a> {
 
 /// The equations of a mechanism with their transposes, and the sums of the derivatives by all but the state.
 pub(crate) struct TransposedField<'f> {
-    field: &'f Field<'f>,
+    /// the field that is transposed
+    pub field: &'f Field<'f>,
     routines: BTreeMap<RoutineKey, OfRoutine>,
     /// for each row of the table of sampled inputs the derivatives by its values
     by_inputs: Vec<Vec<f64>>,
