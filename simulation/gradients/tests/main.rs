@@ -4,6 +4,7 @@ mod closed_forms;
 mod common;
 mod cost;
 mod differences;
+mod doubled_ball;
 mod doubled_hopper;
 mod fits;
 mod hopper;
