@@ -69,6 +69,15 @@ pub struct Fitted<'py> {
     huber: Option<f64>,
     #[pyo3(item)]
     cap: Option<f64>,
+    /// s from the start up to which start states are fitted
+    #[pyo3(item)]
+    flight: Option<f64>,
+    /// s from the start that are fitted one after the other
+    #[pyo3(item)]
+    horizons: Vec<f64>,
+    /// number of starts
+    #[pyo3(item)]
+    starts: usize,
     #[pyo3(item)]
     bootstrap: usize,
     #[pyo3(item)]
@@ -337,13 +346,30 @@ pub fn fit<'py>(
     choices: Choices,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (mechanism, options, by) = compared(py, machine, states, &fitted.variables, choices)?;
-    let trajectories = trajectories(&fitted.trajectories);
+    let mut trajectories = trajectories(&fitted.trajectories);
+    let failed = |error: FitError| match error {
+        FitError::BadRequest(message) => argument(py, &message),
+        error => errors::error(py, "SimulationError", &error.to_string(), "not_fitted", None, None),
+    };
+    let starts = PyDict::new(py);
+    if let Some(flight) = fitted.flight {
+        for trajectory in &mut trajectories {
+            let measured = (&fitted.measured[..], &fitted.units[..]);
+            let found = hodograph_gradients::fit_start(mechanism, &options, measured, trajectory, flight);
+            let found = found.map_err(failed)?;
+            let covariance = matrix(py, &found.covariance)?;
+            starts.set_item(&trajectory.name, (found.trajectory.state.clone(), found.errors, covariance, found.rms))?;
+            *trajectory = found.trajectory;
+        }
+    }
     let task = FitTask {
         trajectories: &trajectories,
         measured: &fitted.measured,
         units: &fitted.units,
         variables: &by,
         loss: fitted.huber.map(Loss::Huber).or(fitted.cap.map(Loss::Cap)).unwrap_or_default(),
+        horizons: &fitted.horizons,
+        starts: fitted.starts,
         bootstrap: fitted.bootstrap,
         seed: fitted.seed,
     };
@@ -352,12 +378,11 @@ pub fn fit<'py>(
             let options = options;
             hodograph_gradients::fit(mechanism, &options, &task)
         })
-        .map_err(|error| match error {
-            FitError::BadRequest(message) => argument(py, &message),
-            error => errors::error(py, "SimulationError", &error.to_string(), "not_fitted", None, None),
-        })?;
-    let Fit { values, surfaces, rms, differences, errors, correlations, undetermined, spread, .. } = &found;
+        .map_err(failed)?;
+    let Fit { values, surfaces, rms, differences, errors, correlations, undetermined, spread, minima, .. } = &found;
     let all = PyDict::new(py);
+    all.set_item("starts", starts)?;
+    all.set_item("minima", minima.clone())?;
     all.set_item("values", PyArray1::from_slice(py, values))?;
     all.set_item("errors", PyArray1::from_slice(py, errors))?;
     all.set_item("correlations", matrix(py, correlations)?)?;

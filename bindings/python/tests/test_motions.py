@@ -300,6 +300,28 @@ def measured(motion, rng):
     return {name: column if name == "time" else column + error(column) for name, column in motion.items()}
 
 
+def test_starts_are_fitted_to_flight_and_several_are_tried():
+    m, surface, rng = model("planar_double_pendulum"), dict(mu=0.2, e=0.6, law="poisson"), np.random.default_rng(7)
+    motions = thrown(m, rng, 3, 0.6, surface)
+    flights = [min(event.time for event in m.simulate(0.6, 0.02, q=[motion[q.name][0] for q in m.coordinates], **surface).events) for motion in motions]
+    flight = 0.9 * min(flights)
+    names = [*(q.name for q in m.coordinates), *(u.name for u in m.speeds)]
+    exact = [np.array([motion[name][0] for name in names]) for motion in motions]
+    for motion in motions:
+        for name in names:
+            motion[name] = motion[name].copy()
+            motion[name][0] += 1e-4
+    found = m.fit("e", motions, errors={name: 1e-4 for name in names}, flight=flight, starts=3, horizons=[0.4], seed=2, **{**surface, "e": 0.5})
+    assert found.values["e"] == pytest.approx(0.6, abs=1e-3) and 1 <= len(found.minima) <= 3
+    assert found.minima[0][1] == found.rms <= found.minima[-1][1]
+    for place, (state, errors, covariance, rms) in enumerate(found.starts.values()):
+        # One row of many is off, so the fit is nearer to the truth than that row.
+        assert np.all(np.abs(state - exact[place]) < 1e-4) and covariance.shape == (len(names), len(names)) and rms < 1.0
+        np.testing.assert_allclose(errors, np.sqrt(np.diag(covariance)))
+    with pytest.raises(hodograph.ArgumentError, match="shorter flight"):
+        m.fit("e", motions, flight=10.0, **surface)
+
+
 def test_parameters_are_fitted_to_motions():
     m, surface, rng = model("planar_double_pendulum"), dict(mu=0.2, e=0.6, law="poisson"), np.random.default_rng(7)
     motions = thrown(m, rng, 4, 0.6, surface)

@@ -70,6 +70,23 @@ fn gravity_and_restitution_are_found_and_the_mass_is_not() {
     );
 }
 
+/// Start speeds without a column are found from the flight, and several starts tell their minima.
+#[test]
+fn starts_are_fitted_to_flight() {
+    let more = ["--parameters", "e", "--parameter", "g=9.7", "--state", "u=0.3"];
+    let run =
+        fit(&drops(), &[&more[..], &["--flight", "0.1", "--starts", "3", "--horizons", "0.2"]].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let answer = run.line();
+    assert!((number(&answer["values"]["e"]) - 0.8).abs() < 1e-8, "{answer}");
+    assert!(answer["minima"].as_array().unwrap().len() > 1 && number(&answer["flight"]) == 0.1, "{answer}");
+    for start in answer["start_states"].as_array().unwrap() {
+        assert!(number(&start["u"]["u"]).abs() < 1e-9 && number(&start["errors"]["u"]) < 1e-9, "{start}");
+    }
+    let long = fit(&drops(), &[&more[..], &["--flight", "0.3"]].concat());
+    assert!(long.code == 2 && long.stderr.contains("shorter flight"), "{}", long.stderr);
+}
+
 /// A drop that was measured wrongly, by a decimetre in some rows, decides nothing with a cap, and little after Huber.
 #[test]
 fn wrong_rows_do_not_decide_with_robust_losses() {

@@ -27,6 +27,11 @@ fn a_rimless_wheel_has_its_multiplier() {
     let motion = &run.line()["motions"][0];
     assert!((number(&motion["multipliers"][0][0]) - eta * eta).abs() < 1e-10, "{motion}");
     assert!(motion["stable"] == true && motion["events"][1]["contact"] == "second", "{motion}");
+    let divided = hodograph(&[&call[..], &surface[..], &["--segments", "3"]].concat(), "");
+    let other = &divided.line()["motions"][0];
+    assert!((number(&other["period"]) - number(&motion["period"])).abs() < 1e-10, "{other}");
+    let none = hodograph(&[&call[..], &surface[..], &["--segments", "0"]].concat(), "");
+    assert!(none.code == 2 && none.stderr.contains("at least one segment"), "{}", none.stderr);
     let table = hodograph(&[&call[..], &surface[..], &["--format", "table"]].concat(), "");
     assert!(table.stdout.contains("multipliers") && table.stdout.contains("yes"), "{}", table.stdout);
     let wrong = ["orbit", &path, "--return", "bounce:second", "--state", &state];

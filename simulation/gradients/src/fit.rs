@@ -2,36 +2,17 @@
 //!
 //! Theory: docs/theory.md, section 21.
 
-use std::fmt;
-
-use hodograph::{ComponentKind, Mechanism, State, Surface};
+use hodograph::{ComponentKind, Mechanism, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 use hodograph_simulation::random::next_random;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use crate::family::{resolve_surfaces, value_of, with_values};
-use crate::trajectory::{Trajectory, follow};
-use crate::{By, GradientError, Loss, differentiate};
-
-/// The task of a fit.
-#[derive(Clone, Debug)]
-pub struct FitTask<'a> {
-    /// the motions
-    pub trajectories: &'a [Trajectory],
-    /// the measured quantities: indices into coordinates followed by independent speeds
-    pub measured: &'a [usize],
-    /// the divisors of the differences of each quantity: its measurement error, or its scale
-    pub units: &'a [f64],
-    /// parameters, mu and e
-    pub variables: &'a [By],
-    /// what a difference costs
-    pub loss: Loss,
-    /// number of bootstrap samples: trajectories are drawn with replacement and fitted again
-    pub bootstrap: usize,
-    /// the seed of the bootstrap samples
-    pub seed: u64,
-}
+use crate::family::{resolve_surfaces, value_of};
+use crate::fit_task::{FitError, FitTask};
+use crate::least_squares::{Differences, Problem};
+use crate::trajectory::Trajectory;
+use crate::{By, Loss};
 
 /// The result of a fit.
 #[derive(Clone, Debug)]
@@ -42,6 +23,8 @@ pub struct Fit {
     pub surfaces: Vec<(usize, Surface<f64>)>,
     /// root mean square of the differences, in their units
     pub rms: f64,
+    /// the values and the root mean square at the minimum that each start led to, the least first
+    pub minima: Vec<(Vec<f64>, f64)>,
     /// the number of differences that cost less than their squares
     pub outliers: usize,
     /// the number of differences
@@ -60,44 +43,15 @@ pub struct Fit {
     pub steps: usize,
 }
 
-/// Why a fit fails.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum FitError {
-    /// A motion cannot be simulated with the initial values: the trajectory, and the error.
-    Motion(String, GradientError),
-    /// The task has a mistake.
-    BadRequest(String),
-}
-
-impl fmt::Display for FitError {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Motion(name, error) => write!(out, "trajectory {name}: {error}"),
-            Self::BadRequest(what) => out.write_str(what),
-        }
-    }
-}
-
-impl std::error::Error for FitError {}
-
 /// Largest number of steps of the Levenberg-Marquardt method, and of those for a bootstrap sample, which
 /// starts from the fit.
 const STEPS: usize = 60;
 const BOOTSTRAP_STEPS: usize = 8;
-/// Damping: initial value, factors after an accepted and after a rejected step, and largest value.
-const DAMPING: f64 = 1e-3;
-const DAMPING_DECREASE: f64 = 0.2;
-const DAMPING_INCREASE: f64 = 5.0;
-const MAX_DAMPING: f64 = 1e12;
-/// The method stops if the sum of squares decreases by less than this part.
-const MIN_DECREASE: f64 = 1e-14;
+/// Random starts have values between those of the first one divided by this and times this.
+const FARTHEST: f64 = 4.0;
 /// A singular value of the derivatives with respect to relative changes below this part of the greatest means
 /// a direction that the data do not determine.
 const UNDETERMINED: f64 = 1e-8;
-/// Relative step of finite differences for motions without derivatives.
-const STEP: f64 = 1e-5;
-
 /// Fits the variables, starting from the values of the mechanism and the options.
 ///
 /// # Errors
@@ -109,17 +63,24 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
     let first: Result<Vec<f64>, String> =
         task.variables.iter().map(|&by| value_of(mechanism, options, by)).collect();
     let first = first.map_err(FitError::BadRequest)?;
-    let all: Vec<usize> = (0..task.trajectories.len()).collect();
-    let (first, before) = match task.loss {
-        // Far from a minimum most differences may be beyond the cap, where nothing tells a direction.
-        Loss::Cap(size) => {
-            let (first, _, before) =
-                Problem { loss: Loss::Huber(size), ..problem }.minimise(first, &all, STEPS)?;
-            (first, before)
+    let mut found = vec![descend(&problem, first.clone())?];
+    let mut random = task.seed;
+    for _ in 1..task.starts {
+        let mut start = first.clone();
+        for (value, by) in start.iter_mut().zip(task.variables) {
+            let part = next_random(&mut random) as f64 / u64::MAX as f64;
+            *value *= FARTHEST.powf(2.0 * part - 1.0);
+            if matches!(by, By::Restitution(_)) {
+                *value = value.min(1.0);
+            }
         }
-        _ => (first, 0),
-    };
-    let (values, here, steps) = problem.minimise(first, &all, STEPS)?;
+        // A start whose motions cannot be followed finds nothing.
+        found.extend(descend(&problem, start));
+    }
+    found.sort_by(|a, b| a.1.roots.norm_squared().total_cmp(&b.1.roots.norm_squared()));
+    let rms = |here: &Differences| (here.square / here.roots.len().max(1) as f64).sqrt();
+    let minima = found.iter().map(|(values, here, _)| (values.clone(), rms(here))).collect();
+    let (values, here, steps) = found.swap_remove(0);
     let scale: Vec<f64> = values.iter().map(|value| if *value == 0.0 { 1.0 } else { value.abs() }).collect();
     let count = here.roots.len();
     let relative =
@@ -147,20 +108,21 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
         let product = own(row) * own(column);
         if product > 0.0 { covariance[(row, column)] / product } else { f64::from(u8::from(row == column)) }
     });
-    let spread = if task.bootstrap == 0 { None } else { Some(problem.bootstrap_spread(&values)?) };
+    let spread = if task.bootstrap == 0 { None } else { Some(bootstrap_spread(&problem, &values)?) };
     let (_, mut fitted) = problem.at(&values).map_err(FitError::BadRequest)?;
     resolve_surfaces(mechanism, &mut fitted);
     Ok(Fit {
         surfaces: fitted.surfaces,
         errors: errors.collect(),
-        rms: (here.square / count.max(1) as f64).sqrt(),
+        rms: rms(&here),
+        minima,
         outliers: here.outliers,
         differences: count,
         correlations,
         undetermined,
         spread,
         without_derivatives: here.without,
-        steps: before + steps,
+        steps,
         values,
     })
 }
@@ -182,6 +144,13 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
     {
         return bad(format!("differences cost less than their squares from {size} on: it must be positive"));
     }
+    let rise = |pair: &[f64]| pair[0] < pair[1];
+    if task.horizons.iter().any(|horizon| !(*horizon > 0.0)) || !task.horizons.windows(2).all(rise) {
+        return bad("horizons must be positive and rise".to_owned());
+    }
+    if task.starts == 0 {
+        return bad("a fit has at least one start".to_owned());
+    }
     if task.bootstrap > 0 && task.trajectories.len() < 2 {
         return bad("a bootstrap draws among trajectories: it needs two at least".to_owned());
     }
@@ -201,183 +170,45 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
     Ok(())
 }
 
-/// The differences between measurements and motions for some values.
-struct Differences {
-    /// the numbers whose squares the differences cost
-    roots: DVector<f64>,
-    /// their derivatives with respect to the variables
-    by: DMatrix<f64>,
-    /// the sum of the squares of the differences
-    square: f64,
-    /// the number of differences that cost less than their squares
-    outliers: usize,
-    /// trajectories without derivatives
-    without: Vec<String>,
+/// From a start to the minimum next to it, through all horizons: values, differences and number of steps.
+fn descend(problem: &Problem<'_>, first: Vec<f64>) -> Result<(Vec<f64>, Differences, usize), FitError> {
+    let (mut values, mut made) = (first, 0);
+    let every = |task: &FitTask<'_>| (0..task.trajectories.len()).collect::<Vec<usize>>();
+    for &horizon in problem.task.horizons {
+        let short: Vec<Trajectory> =
+            problem.task.trajectories.iter().filter_map(|one| one.until(horizon)).collect();
+        let task = FitTask { trajectories: &short, ..problem.task.clone() };
+        let steps;
+        (values, _, steps) = Problem { task: &task, ..*problem }.minimise(values, &every(&task), STEPS)?;
+        made += steps;
+    }
+    let all = every(problem.task);
+    // Far from a minimum most differences may be beyond the cap, where nothing tells a direction.
+    if let Loss::Cap(size) = problem.loss {
+        let steps;
+        (values, _, steps) = Problem { loss: Loss::Huber(size), ..*problem }.minimise(values, &all, STEPS)?;
+        made += steps;
+    }
+    let (values, here, steps) = problem.minimise(values, &all, STEPS)?;
+    Ok((values, here, made + steps))
 }
 
-#[derive(Clone, Copy)]
-struct Problem<'a> {
-    mechanism: &'a InterpretedMechanism,
-    options: &'a Options,
-    task: &'a FitTask<'a>,
-    loss: Loss,
-}
-
-impl Problem<'_> {
-    fn at(&self, values: &[f64]) -> Result<(InterpretedMechanism, Options), String> {
-        with_values(self.mechanism, self.options, self.task.variables, values)
-    }
-
-    /// The differences between a trajectory and its motion, in their units.
-    fn differences_of(&self, trajectory: &Trajectory, states: &[Vec<f64>]) -> Vec<f64> {
-        let mut differences = Vec::new();
-        for (row, state) in states.iter().enumerate() {
-            for (column, (&index, unit)) in self.task.measured.iter().zip(self.task.units).enumerate() {
-                let measured = trajectory.samples[(row, column)];
-                if !measured.is_nan() {
-                    differences.push((state[index] - measured) / unit);
-                }
-            }
+/// Standard deviations of the values over bootstrap samples.
+fn bootstrap_spread(problem: &Problem<'_>, values: &[f64]) -> Result<Vec<f64>, FitError> {
+    let count = problem.task.trajectories.len();
+    let mut state = problem.task.seed;
+    let mut random = || next_random(&mut state);
+    let mut sums = vec![(0.0, 0.0); values.len()];
+    for _ in 0..problem.task.bootstrap {
+        let places: Vec<usize> = (0..count).map(|_| (random() % count as u64) as usize).collect();
+        let (found, ..) = problem.minimise(values.to_vec(), &places, BOOTSTRAP_STEPS)?;
+        for (sum, (found, value)) in sums.iter_mut().zip(found.iter().zip(values)) {
+            let off = found - value;
+            *sum = (sum.0 + off, sum.1 + off * off);
         }
-        differences
     }
-
-    /// The differences without derivatives.
-    fn plain(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
-        let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
-        let states = follow(&mechanism, &options, trajectory)
-            .map_err(|error| FitError::Motion(trajectory.name.clone(), error.into()))?;
-        Ok(self.differences_of(trajectory, &states))
-    }
-
-    /// The differences of some trajectories at these values, with derivatives.
-    fn evaluate(&self, values: &[f64], places: &[usize]) -> Result<Differences, FitError> {
-        let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
-        let (mut all, mut rows, mut without) = (Vec::new(), Vec::new(), Vec::new());
-        for &place in places {
-            let trajectory = &self.task.trajectories[place];
-            let (coordinates, speeds) = trajectory.state.split_at(mechanism.count(ComponentKind::Coordinate));
-            let start = State { time: trajectory.start, coordinates, speeds, inputs: &[] };
-            let found =
-                differentiate(&mechanism, &start, options.clone(), self.task.variables, &trajectory.times);
-            let found = found.map_err(|error| FitError::Motion(trajectory.name.clone(), error))?;
-            let states: Vec<Vec<f64>> = found.samples.iter().map(|sample| sample.state.clone()).collect();
-            all.extend(self.differences_of(trajectory, &states));
-            if found.undefined.is_some() {
-                without.push(trajectory.name.clone());
-                rows.extend(self.by_differences(values, trajectory)?);
-                continue;
-            }
-            for (row, sample) in found.samples.iter().enumerate() {
-                let Some(by) = &sample.derivative else { continue };
-                for (column, (&index, unit)) in self.task.measured.iter().zip(self.task.units).enumerate() {
-                    if !trajectory.samples[(row, column)].is_nan() {
-                        rows.extend(by.row(index).iter().map(|by| by / unit));
-                    }
-                }
-            }
-        }
-        let square = all.iter().map(|difference| difference * difference).sum();
-        let outliers = all.iter().filter(|difference| difference.abs() > self.loss.size()).count();
-        for (difference, row) in all.iter_mut().zip(rows.chunks_exact_mut(values.len().max(1))) {
-            let (root, slope) = self.loss.root(*difference);
-            *difference = root;
-            row.iter_mut().for_each(|by| *by *= slope);
-        }
-        let by = DMatrix::from_row_slice(all.len(), values.len(), &rows);
-        Ok(Differences { roots: DVector::from_vec(all), by, square, outliers, without })
-    }
-
-    /// Derivatives of the differences of a trajectory by finite differences, by rows.
-    fn by_differences(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
-        let mut columns = Vec::with_capacity(values.len());
-        for place in 0..values.len() {
-            let h = STEP * values[place].abs().max(STEP);
-            let moved = |h: f64| {
-                let mut moved = values.to_vec();
-                moved[place] += h;
-                self.plain(&moved, trajectory)
-            };
-            // At the end of the range of a value a one-sided difference is used.
-            let (above, below) = (moved(h), moved(-h));
-            let here = || self.plain(values, trajectory);
-            let (above, below, width) = match (above, below) {
-                (Ok(above), Ok(below)) => (above, below, 2.0 * h),
-                (Ok(above), Err(_)) => (above, here()?, h),
-                (Err(_), Ok(below)) => (here()?, below, h),
-                (Err(error), Err(_)) => return Err(error),
-            };
-            columns.push(above.iter().zip(&below).map(|(a, b)| (a - b) / width).collect::<Vec<f64>>());
-        }
-        let rows = columns.first().map_or(0, Vec::len);
-        Ok((0..rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect())
-    }
-
-    /// Runs the Levenberg-Marquardt method on these trajectories.
-    fn minimise(
-        &self,
-        mut values: Vec<f64>,
-        places: &[usize],
-        steps: usize,
-    ) -> Result<(Vec<f64>, Differences, usize), FitError> {
-        let mut here = self.evaluate(&values, places)?;
-        let mut damping = DAMPING;
-        let mut made = 0;
-        while made < steps {
-            let normal = here.by.transpose() * &here.by;
-            let slope = here.by.transpose() * &here.roots;
-            let square = here.roots.norm_squared();
-            let mut next = None;
-            while damping < MAX_DAMPING {
-                // Damping is relative to the curvature along each variable, so that their units do not
-                // matter.
-                let least = normal.diagonal().max() * f64::EPSILON;
-                let damped = DMatrix::from_fn(values.len(), values.len(), |row, column| {
-                    let more = if row == column { damping * normal[(row, row)].max(least) } else { 0.0 };
-                    normal[(row, column)] + more
-                });
-                let step = damped.cholesky().map(|factor| factor.solve(&slope));
-                let trial: Option<Vec<f64>> = step
-                    .map(|step| values.iter().zip(step.iter()).map(|(value, step)| value - step).collect());
-                // If the values are refused or their motions cannot be simulated, a shorter step is tried.
-                if let Some(trial) = trial
-                    && let Ok(there) = self.evaluate(&trial, places)
-                    && there.roots.norm_squared() < square
-                {
-                    next = Some((trial, there));
-                    break;
-                }
-                damping *= DAMPING_INCREASE;
-            }
-            let Some((trial, there)) = next else { break };
-            let fallen = square - there.roots.norm_squared();
-            (values, here) = (trial, there);
-            damping = (damping * DAMPING_DECREASE).max(f64::EPSILON);
-            made += 1;
-            if fallen <= MIN_DECREASE * square {
-                break;
-            }
-        }
-        Ok((values, here, made))
-    }
-
-    /// Standard deviations of the values over bootstrap samples.
-    fn bootstrap_spread(&self, values: &[f64]) -> Result<Vec<f64>, FitError> {
-        let count = self.task.trajectories.len();
-        let mut state = self.task.seed;
-        let mut random = || next_random(&mut state);
-        let mut sums = vec![(0.0, 0.0); values.len()];
-        for _ in 0..self.task.bootstrap {
-            let places: Vec<usize> = (0..count).map(|_| (random() % count as u64) as usize).collect();
-            let (found, ..) = self.minimise(values.to_vec(), &places, BOOTSTRAP_STEPS)?;
-            for (sum, (found, value)) in sums.iter_mut().zip(found.iter().zip(values)) {
-                let off = found - value;
-                *sum = (sum.0 + off, sum.1 + off * off);
-            }
-        }
-        let n = self.task.bootstrap as f64;
-        let deviation =
-            |(sum, squares): &(f64, f64)| ((squares - sum * sum / n) / (n - 1.0).max(1.0)).max(0.0).sqrt();
-        Ok(sums.iter().map(deviation).collect())
-    }
+    let n = problem.task.bootstrap as f64;
+    let deviation =
+        |(sum, squares): &(f64, f64)| ((squares - sum * sum / n) / (n - 1.0).max(1.0)).max(0.0).sqrt();
+    Ok(sums.iter().map(deviation).collect())
 }

@@ -29,7 +29,8 @@
 //! [`find_orbit`] finds periodic motions by these derivatives, with their multipliers, and [`follow_branch`] follows them
 //! through a parameter.
 //!
-//! [`fit()`] fits parameters, mu and e to measured motions.
+//! [`fit()`] fits parameters, mu and e to measured motions, and [`fit_start`] their start states to what was measured before
+//! anything is struck.
 //!
 //! [`validation`] compares predictions with measured motions, and [`statistics`] sums up their errors.
 //!
@@ -42,8 +43,10 @@ mod closed;
 mod family;
 mod field;
 mod fit;
+mod fit_task;
 mod followed;
 mod junction;
+mod least_squares;
 mod loss;
 mod mode_rates;
 mod modes;
@@ -51,6 +54,7 @@ mod motion;
 mod orbit;
 mod periodic;
 mod shooting;
+mod start_state;
 pub mod statistics;
 mod trajectory;
 mod transposed;
@@ -60,10 +64,12 @@ pub use adjoint::Adjoint;
 pub use branch::{Branch, BranchPoint, Change, ChangeKind, follow_branch};
 pub use by::{By, Reason, Undefined};
 pub use family::with_values;
-pub use fit::{Fit, FitError, FitTask, fit};
+pub use fit::{Fit, fit};
+pub use fit_task::{FitError, FitTask};
 pub use followed::{GradientError, Sample};
 pub use loss::Loss;
 pub use motion::{EventGradient, MotionGradient, differentiate};
 pub use orbit::find_orbit;
 pub use periodic::{Exchange, Orbit, OrbitError, Periodic, Return};
+pub use start_state::{FittedStart, fit_start};
 pub use trajectory::Trajectory;

@@ -12,12 +12,28 @@ pub struct Trajectory {
     pub name: String,
     /// its initial time, s
     pub start: f64,
-    /// initial coordinates and independent speeds, which are not fitted
+    /// initial coordinates and independent speeds; [`fit_start`](crate::fit_start) finds them from the first samples
     pub state: Vec<f64>,
     /// times of the samples after the initial one, s, increasing
     pub times: Vec<f64>,
     /// a row per sample, a column per measured quantity; NaN if nothing was measured
     pub samples: DMatrix<f64>,
+}
+
+impl Trajectory {
+    /// Its samples up to a duration from the start, s; `None` if there are none.
+    pub(crate) fn until(&self, horizon: f64) -> Option<Self> {
+        let count = self.times.iter().take_while(|&&time| time <= self.start + horizon).count();
+        let samples = self.samples.rows(0, count).into_owned();
+        let times = self.times[..count].to_vec();
+        (count > 0).then(|| Trajectory {
+            name: self.name.clone(),
+            state: self.state.clone(),
+            times,
+            samples,
+            ..*self
+        })
+    }
 }
 
 /// The states of a mechanism at the times of a motion, from its start: coordinates followed by independent

@@ -85,6 +85,8 @@ pub fn floor(
         units: measure.units,
         variables,
         loss: Loss::Square,
+        horizons: &[],
+        starts: 1,
         bootstrap: 0,
         seed: 0,
     };

@@ -1,7 +1,7 @@
 //! Fits to motions that were made with known values.
 
 use hodograph::{Law, Mechanism, State};
-use hodograph_gradients::{By, FitError, FitTask, Loss, Trajectory, fit};
+use hodograph_gradients::{By, FitError, FitTask, Loss, Trajectory, fit, fit_start};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Simulation;
 use nalgebra::DMatrix;
@@ -37,7 +37,17 @@ fn throws(values: ([f64; 2], [f64; 3]), error: f64) -> Vec<Trajectory> {
 
 fn task<'a>(trajectories: &'a [Trajectory], variables: &'a [By], bootstrap: usize) -> FitTask<'a> {
     let loss = Loss::Square;
-    FitTask { trajectories, measured: &[0, 1, 2], units: &[1e-3; 3], variables, loss, bootstrap, seed: 1 }
+    FitTask {
+        trajectories,
+        measured: &[0, 1, 2],
+        units: &[1e-3; 3],
+        variables,
+        loss,
+        horizons: &[],
+        starts: 1,
+        bootstrap,
+        seed: 1,
+    }
 }
 
 fn rod() -> InterpretedMechanism {
@@ -127,4 +137,69 @@ fn tasks_that_are_wrong_are_refused() {
     throws[0].samples.fill(f64::NAN);
     let found = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &task(&throws[..1], &[By::Friction(None)], 0));
     assert!(matches!(&found, Err(FitError::BadRequest(what)) if what.contains("no value")), "{found:?}");
+}
+
+/// Start states that were measured with errors, from the samples in flight: within some standard errors, which are much
+/// smaller; speeds that were not measured at all are found.
+#[test]
+fn start_states_are_fitted_to_flight() {
+    let values = ([0.23, 0.61], [1.0, 1.0, 9.81]);
+    let exact = throws(values, 0.0);
+    let measured = throws(values, 1e-3);
+    let mechanism = rod();
+    let options = options(0.23, 0.61, Law::Poisson);
+    let columns = (&[0, 1, 2][..], &[1e-3; 3][..]);
+    for (exact, mut measured) in exact.iter().zip(measured) {
+        measured.state[1] += 1e-3;
+        measured.state[3..].fill(0.0);
+        let found = fit_start(&mechanism, &options, columns, &measured, 0.12).unwrap();
+        for ((value, exact), error) in found.trajectory.state.iter().zip(&exact.state).zip(&found.errors) {
+            assert!((value - exact).abs() < 5.0 * error && *error < 0.03, "{value} {exact} {error}");
+        }
+        assert!(found.errors[..3].iter().all(|error| *error < 1.1e-3), "{:?}", found.errors);
+        assert!(found.rms < 1.0 && found.covariance[(0, 3)] < 0.0, "{found:?}");
+        // Without errors it is the start itself.
+        let mut free = exact.clone();
+        free.state[3..].fill(0.1);
+        let again = fit_start(&mechanism, &options, columns, &free, 0.12).unwrap();
+        for (value, exact) in again.trajectory.state.iter().zip(&exact.state) {
+            assert!((value - exact).abs() < 1e-9, "{value} {exact}");
+        }
+        let late = fit_start(&mechanism, &options, columns, &measured, 0.7);
+        assert!(
+            matches!(&late, Err(FitError::BadRequest(what)) if what.contains("shorter flight")),
+            "{late:?}"
+        );
+        let none = fit_start(&mechanism, &options, columns, &measured, 0.01);
+        assert!(matches!(&none, Err(FitError::BadRequest(what)) if what.contains("no sample")), "{none:?}");
+    }
+}
+
+/// With little friction a descent ends in another minimum, mu = 0.037, e = 0.486; one of several starts leads to the values.
+#[test]
+fn starts_lead_out_of_other_minima() {
+    let throws = throws(([0.23, 0.61], [1.0, 1.0, 9.81]), 0.0);
+    let variables = [By::Friction(None), By::Restitution(None)];
+    let count = |horizons: &[f64], starts| {
+        let mut ends = 0;
+        for (mu, e) in [(0.04, 0.3), (0.05, 0.5), (0.02, 0.1), (0.8, 0.95)] {
+            let task = FitTask { horizons, starts, ..task(&throws, &variables, 0) };
+            let found = fit(&rod(), &options(mu, e, Law::Poisson), &task).unwrap();
+            println!("{horizons:?} {starts} from {mu} {e}: {:?}", found.minima.first());
+            assert!(
+                found.minima.windows(2).all(|pair| pair[0].1 <= pair[1].1 + 1e-9)
+                    && found.minima.len() <= starts
+            );
+            ends += usize::from(found.rms < 1e-6);
+        }
+        ends
+    };
+    let (alone, by_horizons, by_starts) = (count(&[], 1), count(&[0.3, 0.45], 1), count(&[], 12));
+    println!("{alone} {by_horizons} {by_starts} of 4");
+    assert!(alone < by_starts && by_horizons > 0, "{alone} {by_horizons} {by_starts}");
+    for (horizons, starts) in [(&[0.3, 0.2][..], 1), (&[-1.0][..], 1), (&[][..], 0)] {
+        let wrong = FitTask { horizons, starts, ..task(&throws, &variables, 0) };
+        let wrong = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &wrong);
+        assert!(matches!(wrong, Err(FitError::BadRequest(_))), "{wrong:?}");
+    }
 }

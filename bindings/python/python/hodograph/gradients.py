@@ -91,7 +91,9 @@ class Branch(NamedTuple):
 class Fit:
     """Fitted values: ``values``, their standard ``errors`` and, with draws, their ``spread``, by name; ``correlations`` (v, v); ``undetermined``: directions in
     which the values change no difference; ``rms`` of the ``differences`` in their units, of which ``outliers`` cost less than their squares; ``surfaces``:
-    {contact: mu, e, law} with these values; ``without_derivatives``: names of motions that were fitted by differences; ``steps``."""
+    {contact: mu, e, law} with these values; ``without_derivatives``: names of motions that were fitted by differences; ``steps``; ``minima``: (values, rms)
+    at the minimum of each start, the least first; ``starts``, with ``flight``: for each motion its start state, the standard errors of its components and their
+    covariance (n + p, n + p), and the rms of the flight."""
 
     def __init__(self, found: dict[str, Any], names: tuple[str, ...]) -> None:
         named = lambda numbers: dict(zip(names, (float(number) for number in numbers)))  # noqa: E731
@@ -105,6 +107,10 @@ class Fit:
         self.outliers: int = found["outliers"]
         self.without_derivatives: list[str] = found["without_derivatives"]
         self.steps: int = found["steps"]
+        self.minima: list[tuple[dict[str, float], float]] = [(named(values), rms) for values, rms in found["minima"]]
+        self.starts: dict[str, tuple[Floats, Floats, Floats, float]] = {
+            name: (np.array(state), np.array(errors), covariance, rms) for name, (state, errors, covariance, rms) in found["starts"].items()
+        }
         self.surfaces: dict[str, dict[str, Any]] = {
             contact: {"mu": mu, "e": e, "law": law} for contact, mu, e, law in found["surfaces"]
         }

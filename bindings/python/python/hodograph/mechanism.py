@@ -603,19 +603,22 @@ class Mechanism(_native.Mechanism):
         self, variables: Sequence[str], motions: Any, *, outputs: Optional[Sequence[str]] = None, errors: Optional[Mapping[str, float]] = None,
         bootstrap: int = 0, seed: int = 0, mu: Optional[float] = None, e: Optional[float] = None, law: Optional[str] = None,
         tolerance: Optional[float] = None, surfaces: Optional[Mapping[str, Mapping[str, Any]]] = None, max_step: Optional[float] = None,
-        huber: Optional[float] = None, cap: Optional[float] = None,
+        huber: Optional[float] = None, cap: Optional[float] = None, flight: Optional[float] = None, horizons: Sequence[float] = (), starts: int = 1,
     ) -> Fit:
         """Fits parameters, 'mu' and 'e' (or 'mu.CONTACT') to measured motions, from the values of the model and the options, as :class:`Fit`.
 
         ``motions``: a table, or a list of tables: columns ``time`` (or ``t``), s, and coordinates and independent speeds by name. The first row of each is
-        its start, taken as it is; NaN in later rows is what was not measured. ``outputs``: the columns that are compared (else all); ``errors``: by what the
+        its start, taken as it is unless ``flight`` s are given, in which nothing is struck: then fitted to the samples within them; NaN in later rows is what was not measured. ``outputs``: the columns that are compared (else all); ``errors``: by what the
         differences of a column are divided, by name (else the standard deviation of the column); ``bootstrap``: so often motions are drawn anew.
+        ``horizons``: s from the start, increasing, up to which the motions are fitted one after the other, before all of them; ``starts``: so many starts,
+        the first that of the model and the options, others at random, a quarter to four times its values (``minima`` of the answer).
         ``huber``: differences beyond so many errors count in proportion to their size, not to its square; ``cap``: as if they were so large."""
         compared = self._compared(motions, outputs, errors)
         _check_seed(seed)
         fitted = {
             **compared, "variables": list(variables),
             "huber": optional_number(huber, "huber"), "cap": optional_number(cap, "cap"), "bootstrap": bootstrap, "seed": seed,
+            "flight": optional_number(flight, "flight"), "horizons": [number(horizon, "horizons") for horizon in horizons], "starts": starts,
         }  # fmt: skip
         if huber is not None and cap is not None:
             raise ArgumentError("`huber` and `cap` exclude each other", kind="bad_option", place="cap")

@@ -6,13 +6,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use hodograph::{ComponentKind, Mechanism as _, Surface};
-use hodograph_gradients::{By, Fit, FitError, FitTask, Loss, fit};
+use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_gradients::{By, Fit, FitError, FitTask, FittedStart, Loss, fit};
 use hodograph_interpreter::InterpretedMechanism;
 use serde::Serialize;
 
 use self::table_of_motions::Motions;
 use super::motion_arguments::MotionArguments;
-use crate::evaluate::report::Named;
+use crate::evaluate::report::{Named, named};
 use crate::expression;
 use crate::json::{Failure, Kind};
 use crate::stop::{Outcome, Stop};
@@ -23,8 +24,8 @@ use crate::table::{Table, number};
 ///   hodograph fit throws.csv rod.mech --parameters mu,e,l --mu 0.2 --e 0.5 --law poisson
 ///
 /// The data are a CSV file with a column `t` (s) and columns of coordinates and speeds, named as in the model, as `x` or `x [m]`; a
-/// column `trajectory` tells motions apart. The first row of each motion is its start state, which is taken as it is; what has no
-/// column there is that of the model or of --state. The fit begins at the values that the model and the options give.
+/// column `trajectory` tells motions apart. The first row of each motion is its start state, which is taken as it is unless
+/// --flight is given; what has no column there is that of the model or of --state. The fit begins at the values that the model and the options give.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -49,11 +50,21 @@ pub struct Arguments {
     /// differences beyond so many errors count as much as if they were so large
     #[arg(long, value_name = "ERRORS")]
     cap: Option<f64>,
+    /// seconds from the start of each motion in which nothing is struck: its start state is fitted to the samples within them
+    /// [default: the first row is taken as it is]
+    #[arg(long, value_name = "SECONDS")]
+    flight: Option<f64>,
+    /// seconds from the start up to which the motions are fitted, one after the other, before all of them: 0.1,0.3
+    #[arg(long, value_name = "SECONDS,..", value_delimiter = ',')]
+    horizons: Vec<f64>,
+    /// number of starts: that of the model and the options, and others at random, from a quarter to four times its values
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    starts: usize,
     /// number of bootstrap samples: trajectories are drawn with replacement and fitted again, which gives the
     /// spread of the values
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     bootstrap: usize,
-    /// the seed of the bootstrap samples
+    /// the seed of the starts and the bootstrap samples
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
@@ -79,14 +90,20 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 return Err(Stop::Fault("motions of mechanisms with inputs are not fitted yet".to_owned()));
             }
             let options = arguments.motion.options(&mechanism, &start)?;
-            let motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
+            let mut motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
             let units = arguments.units(&motions, &mechanism)?;
+            let starts = match arguments.flight {
+                Some(flight) => motions.fit_starts(&mechanism, &options, &units, flight).map_err(stop)?,
+                None => Vec::new(),
+            };
             let task = FitTask {
                 trajectories: &motions.trajectories,
                 measured: &motions.measured,
                 units: &units,
                 variables: &by,
                 loss: arguments.loss(),
+                horizons: &arguments.horizons,
+                starts: arguments.starts,
                 bootstrap: arguments.bootstrap,
                 seed: arguments.seed,
             };
@@ -98,6 +115,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             answer.outliers = (arguments.loss() != Loss::Square).then_some(found.outliers);
             answer.model = arguments.model.display().to_string();
             answer.options = arguments.motion.given();
+            answer.flight = arguments.flight;
+            answer.start_states = starts.iter().map(|found| Start::new(&machine.mechanism, found)).collect();
             answer.motions = motions.trajectories.iter().map(|one| one.name.clone()).collect();
             Ok(answer)
         },
@@ -105,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     )
 }
 
-fn stop(error: FitError) -> Stop {
+pub(crate) fn stop(error: FitError) -> Stop {
     match error {
         FitError::BadRequest(message) => Stop::Call(message),
         error => Stop::Fault(error.to_string()),
@@ -164,6 +183,46 @@ struct Answer<'a> {
     outputs: Vec<String>,
     units: BTreeMap<String, f64>,
     motions: Vec<String>,
+    /// with `--starts`: the values and the root mean square at the minimum of each, the least first
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    minima: Vec<Minimum<'a>>,
+    /// with `--flight`: its seconds, and the start states that were fitted
+    #[serde(skip_serializing_if = "Option::is_none")]
+    flight: Option<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    start_states: Vec<Start<'a>>,
+}
+
+#[derive(Serialize)]
+struct Minimum<'a> {
+    values: Named<'a, f64>,
+    rms: f64,
+}
+
+/// A start state that was fitted.
+#[derive(Serialize)]
+struct Start<'a> {
+    trajectory: String,
+    q: Named<'a, f64>,
+    u: Named<'a, f64>,
+    /// standard errors of both; null where the samples do not determine one
+    errors: Named<'a, f64>,
+    rms: f64,
+}
+
+impl<'a> Start<'a> {
+    fn new(model: &'a Mechanism, found: &FittedStart) -> Self {
+        let (q, u) = found.trajectory.state.split_at(model.coordinates.len());
+        let speeds = || model.speeds.iter().filter(|speed| !speed.dependent);
+        let names = model.coordinates.iter().map(|one| &one.name).chain(speeds().map(|one| &one.name));
+        Start {
+            trajectory: found.trajectory.name.clone(),
+            q: named(&model.coordinates, q.iter().copied()),
+            u: named(speeds(), u.iter().copied()),
+            errors: Named(names.map(String::as_str).zip(found.errors.iter().copied()).collect()),
+            rms: found.rms,
+        }
+    }
 }
 
 impl<'a> Answer<'a> {
@@ -203,6 +262,12 @@ impl<'a> Answer<'a> {
             outputs: Vec::new(),
             units: BTreeMap::new(),
             motions: Vec::new(),
+            minima: match &found.minima[..] {
+                [_] => Vec::new(),
+                all => all.iter().map(|(values, rms)| Minimum { values: named(values), rms: *rms }).collect(),
+            },
+            flight: None,
+            start_states: Vec::new(),
         }
     }
 
@@ -231,6 +296,10 @@ impl<'a> Answer<'a> {
             self.trajectories,
             self.steps
         );
+        if !self.minima.is_empty() {
+            let all: Vec<String> = self.minima.iter().map(|minimum| number(minimum.rms)).collect();
+            out += &format!("minima of all starts: {}\n", all.join(" "));
+        }
         if let Some(outliers) = self.outliers {
             out += &format!("{outliers} of the differences cost less than their squares\n");
         }

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use hodograph::{ComponentKind, Mechanism as _, State};
-use hodograph_gradients::Trajectory;
+use hodograph_gradients::{FitError, FittedStart, Trajectory, fit_start};
 use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::Options;
 use nalgebra::DMatrix;
 
 use crate::stop::{Outcome, Stop};
@@ -37,6 +38,22 @@ struct Row {
 }
 
 impl Motions {
+    /// Fits the start states to the samples within `flight` s, and puts them in place of those of the first rows.
+    pub fn fit_starts(
+        &mut self,
+        mechanism: &InterpretedMechanism,
+        options: &Options,
+        units: &[f64],
+        flight: f64,
+    ) -> Result<Vec<FittedStart>, FitError> {
+        let of = |trajectory: &mut Trajectory| {
+            let found = fit_start(mechanism, options, (&self.measured, units), trajectory, flight)?;
+            trajectory.clone_from(&found.trajectory);
+            Ok(found)
+        };
+        self.trajectories.iter_mut().map(of).collect()
+    }
+
     /// Reads motions. `start` is the state of quantities without a column. Without `outputs` all columns of
     /// the state are compared.
     ///

@@ -30,7 +30,7 @@ use crate::stop::{Outcome, Stop};
 ///   hodograph fit some.csv rod.mech --parameters mu,e --mu 0.2 --e 0.5 --law poisson --format json > fit.json
 ///   hodograph validate fit.json others.csv --html others.html
 ///
-/// Predicts each motion of the data from its first row, with the values, outputs and errors of the fit, and tells how far the
+/// Predicts each motion of the data from its start, as the fit took it, with the values, outputs and errors of the fit, and tells how far the
 /// predictions are from the measurements: quantiles of the errors, and what they are beside another prediction (--against), beside
 /// measurement noise alone (--noise), and beside the best values of each motion (--floor).
 #[derive(Clone, Debug, clap::Args)]
@@ -77,6 +77,8 @@ struct Fitted {
     outputs: Vec<String>,
     options: Vec<String>,
     motions: Vec<String>,
+    #[serde(default)]
+    flight: Option<f64>,
 }
 
 /// The options that `fit` had.
@@ -160,12 +162,15 @@ fn report(arguments: &Arguments, courses: &mut Vec<Course>) -> Outcome<Report> {
     let values: Vec<f64> = fitted.values.values().copied().collect();
     let (mechanism, options) =
         with_values(&mechanism, &options, &by, &values).map_err(|why| call(&arguments.fit, why))?;
-    let motions = Motions::read(&arguments.data, &mechanism, &start, &fitted.outputs)?;
+    let mut motions = Motions::read(&arguments.data, &mechanism, &start, &fitted.outputs)?;
     let mut units = vec![1.0; motions.measured.len()];
     for (name, unit) in &fitted.units {
         if let Some(place) = motions.place(&mechanism, name) {
             units[place] = *unit;
         }
+    }
+    if let Some(flight) = fitted.flight {
+        motions.fit_starts(&mechanism, &options, &units, flight).map_err(super::fit::stop)?;
     }
     let within = numbers(&arguments.within, "--within", &motions, &mechanism)?;
     let noise = numbers(&arguments.noise, "--noise", &motions, &mechanism)?;
