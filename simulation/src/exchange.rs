@@ -49,7 +49,8 @@ pub enum IndicatorKind {
     SpinningFriction,
     /// like `Slip`, for bodies that rotate about the normal
     Spinning,
-    /// the least f of the sliding contacts, relative to their reduced masses: a contact jams where it vanishes
+    /// the determinant of the sliding contacts' normal accelerations by normal forces, relative to that without friction:
+    /// contacts jam where it vanishes; of one contact it is f / m_nn
     Jam,
 }
 

@@ -10,7 +10,7 @@ use crate::contact_problem::{self, Mode, UNHELD, Wanted};
 /// The lists of so many contacts need no memory from the heap.
 const FEW: usize = 4;
 
-/// A sliding contact with f / m_nn below this jams: its force grows without bound as f falls to zero.
+/// Sliding contacts jam where [`Forces::f`] is below this: their forces grow without bound as it falls to zero.
 pub(crate) const JAM: f64 = 1e-6;
 
 /// The mode of a closed contact during the motion.
@@ -41,9 +41,9 @@ pub(crate) struct Forces {
     pub acceleration: DVector<f64>,
     /// Whether the forces are unique for this motion.
     pub unique: bool,
-    /// The distance from a jam: the least f / m_nn of a sliding contact; 1 without sliding contacts.
+    /// The distance from a jam ([`contact_problem::Admissible::f`]): f / m_nn of one sliding contact; 1 without.
     pub f: f64,
-    /// The index of that contact.
+    /// The index of the contact whose force grows most as it falls to zero.
     pub jams: Option<usize>,
     /// Forces up to this are rounding errors, N.
     pub rounding: f64,

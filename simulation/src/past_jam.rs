@@ -36,7 +36,7 @@ impl Transition<'_> {
         self.crowded(start)
     }
 
-    /// The next instant at which f of a contact is as negative as it is positive here, at the rates of the present modes, and
+    /// The next instant at which f of the contacts is as negative as it is positive here, at the rates of the present modes, and
     /// the modes that are chosen there, if they are others.
     fn past_a_jam(&self, contacts: &[usize], was: &[Phase]) -> Result<Option<Past>, SimulationError> {
         let Ok(here) = self.motion(&self.closed()).evaluate(self.front.t, &self.front.y) else {
@@ -56,7 +56,7 @@ impl Transition<'_> {
     }
 }
 
-/// Whether f of a contact is clearly negative where all contacts keep sticking or sliding.
+/// Whether f of the contacts is clearly negative where all of them keep sticking or sliding.
 fn jams(question: &Question) -> bool {
     let Question { support, slips, friction } = question;
     let held = friction.iter().zip(slips);

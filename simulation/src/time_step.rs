@@ -44,7 +44,7 @@ const LAST: f64 = 0.5;
 const BARRED: f64 = 100.0;
 /// Directions do not follow from the state after this many events at one time.
 const CROWD: usize = 4;
-/// Directions follow from the state if f / m_nn is above this; near a jam f depends on them too much.
+/// Directions follow from the state if [`crate::forces::Forces::f`] is above this; near a jam f depends on them too much.
 const FAR: f64 = 0.1;
 /// Points of a step at which slip is compared with its settled direction.
 const LOOKED_AT: [f64; 2] = [0.4, 0.8];

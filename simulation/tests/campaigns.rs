@@ -486,6 +486,14 @@ fn feet_that_slide_apart() {
     assert!(ends.iter().all(|end| end.events.iter().any(opens)), "{:?}", ends[0].names());
 }
 
+/// Two feet of a table slide; one by itself would jam, and the forces of both stay finite and unique.
+#[test]
+fn a_foot_that_another_keeps_from_a_jam() {
+    let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
+    near_its_start("table3", &[123], &mut outcomes, &mut failures);
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
 /// Motions of a model from random starts near the one that it states: counts their outcomes, and lists those that fail.
 fn near_its_start(
     name: &'static str,

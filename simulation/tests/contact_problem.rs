@@ -321,6 +321,34 @@ fn a_contact_without_forces_has_a_name() {
     assert!(rest(&problem).is_none());
 }
 
+/// Two contacts slide; force at one drives the other apart, and force at the other draws the one closer. The second by itself
+/// would jam where its own f passes zero; together their forces stay finite until their determinant vanishes, and only there
+/// the distance from a jam does.
+#[test]
+fn a_jam_is_where_forces_grow_without_bound() {
+    let (mu, slip) = ([1.0; 2], [Some(Vector2::new(1.0, 0.0)); 2]);
+    let modes = slip.map(|slip| Mode::Slide(slip.unwrap()));
+    let found = |own: f64| {
+        let mut w = DMatrix::from_diagonal_element(6, 6, 1.0);
+        (w[(1, 1)], w[(4, 4)]) = (4.0, 4.0);
+        for (a, b, value) in [(0, 4, 0.5), (3, 1, -0.5), (3, 4, 1.0 - own)] {
+            (w[(a, b)], w[(b, a)]) = (value, value);
+        }
+        let beta = DVector::from_vec(vec![-1.0, 0.0, 0.0, 0.1, 0.0, 0.0]);
+        with_modes(&Problem { w: &w, beta: &beta, mu: &mu, slip: &slip, noise: None }, &modes).unwrap()
+    };
+    // [1, -0.5; 0.5, own] has the determinant own + 0.25 and the adjugate [own, 0.5; -0.5, 1].
+    for place in -40..=40 {
+        let own = f64::from(place) / 100.0;
+        if place != -25 {
+            let (found, determinant) = (found(own), own + 0.25);
+            assert!((found.f - determinant).abs() < 1e-13, "{own}: {}", found.f);
+            assert!(place == 0 || found.parts == (place > 0), "{own}");
+            assert!((found.force[0] * determinant - (own - 0.05)).abs() < 1e-12, "{own}");
+        }
+    }
+}
+
 #[test]
 fn malformed_problems_are_refused() {
     let w = DMatrix::identity(3, 3);

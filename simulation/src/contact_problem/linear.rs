@@ -72,13 +72,15 @@ pub(super) struct Elimination {
     columns: Vector,
     n: usize,
     pub rank: usize,
+    /// whether the determinant of P Q is positive
+    even: bool,
 }
 
 impl Elimination {
     /// Eliminates a matrix given by columns; pivots up to `singular` times the first one count as zero.
     pub fn new(mut lu: Square, n: usize, singular: f64) -> Self {
         let (mut rows, mut columns) = (vector(n, |i| i as f64), vector(n, |i| i as f64));
-        let mut rank = 0;
+        let (mut rank, mut even) = (0, true);
         let mut first = 0.0;
         while rank < n {
             let (mut greatest, mut place) = (0.0, (rank, rank));
@@ -100,12 +102,14 @@ impl Elimination {
                     lu.swap(column * n + rank, column * n + place.0);
                 }
                 rows.swap(rank, place.0);
+                even = !even;
             }
             if place.1 != rank {
                 for row in 0..n {
                     lu.swap(rank * n + row, place.1 * n + row);
                 }
                 columns.swap(rank, place.1);
+                even = !even;
             }
             let (left, right) = lu.split_at_mut((rank + 1) * n);
             let left = &mut left[rank * n..];
@@ -121,7 +125,13 @@ impl Elimination {
             }
             rank += 1;
         }
-        Self { lu, rows, columns, n, rank }
+        Self { lu, rows, columns, n, rank, even }
+    }
+
+    /// The determinant.
+    pub fn determinant(&self) -> f64 {
+        let sign = if self.even { 1.0 } else { -1.0 };
+        (0..self.n).fold(sign, |product, i| product * self.entry(i, i))
     }
 
     fn entry(&self, row: usize, column: usize) -> f64 {

@@ -24,6 +24,7 @@ mod directions;
 mod edge;
 mod enumerate;
 mod jam;
+mod jam_distance;
 mod linear;
 mod motion;
 mod natural_map;

@@ -10,6 +10,7 @@ use super::{
     Mode, Problem, Unsolved,
     centre::{By, centre},
     cone::{Cone, least_reserve},
+    jam_distance::Distance,
     linear::{Elimination, FEW, Square, Vector, residual, vector},
     problem::three,
 };
@@ -30,12 +31,15 @@ pub struct Admissible {
     pub least: Option<usize>,
     /// Whether the forces are the only ones with this motion.
     pub unique: bool,
-    /// The least f over sliding contacts: the derivative of a_n with respect to lambda_n of one contact while
-    /// all others keep their modes, divided by its W_nn. At zero the contact jams. 1 without sliding
-    /// contacts.
+    /// The distance of the sliding contacts from a jam: the determinant of the matrix of their normal accelerations by
+    /// normal forces while all others keep their modes, divided by the same without friction. It vanishes where forces
+    /// grow without bound, and there only. Of one contact it is the derivative of a_n with respect to lambda_n, divided
+    /// by W_nn. 1 without sliding contacts; the least one of contacts that do not depend on one another.
     pub f: f64,
-    /// The contact with that f.
+    /// The contact whose own force grows most as f falls to zero.
     pub jams: Option<usize>,
+    /// Whether more force at any sliding contact drives it apart while all others keep their modes.
+    pub parts: bool,
 }
 
 /// Why contacts cannot keep their modes.
@@ -130,8 +134,8 @@ pub(crate) fn found(
     let slides = modes.iter().any(|mode| matches!(mode, Mode::Slide(_)));
     if wanted == Wanted::Any || wanted == Wanted::Motion && (unique || !slides) {
         let (force, acceleration) = unknowns.motion(problem, &x);
-        let (f, jams) = unknowns.jam(problem, &elimination);
-        return Ok(Admissible { force, acceleration, margin: 0.0, least: None, unique, f, jams });
+        let (Distance { f, parts, .. }, jams) = unknowns.jam(problem, &matrix, &elimination);
+        return Ok(Admissible { force, acceleration, margin: 0.0, least: None, unique, f, jams, parts });
     }
     let mut x = DVector::from_column_slice(&x);
     let cones = unknowns.cones(problem);
@@ -155,9 +159,9 @@ pub(crate) fn found(
     }
     let least = (0..cones.len()).min_by(|&a, &b| cones[a].reserve(&x).total_cmp(&cones[b].reserve(&x)));
     let (force, acceleration) = unknowns.motion(problem, x.as_slice());
-    let (f, jams) = unknowns.jam(problem, &elimination);
+    let (Distance { f, parts, .. }, jams) = unknowns.jam(problem, &matrix, &elimination);
     let least = least.map(|cone| unknowns.list[cones[cone].normal].contact);
-    Ok(Admissible { force, acceleration, margin, least, unique, f, jams })
+    Ok(Admissible { force, acceleration, margin, least, unique, f, jams, parts })
 }
 
 /// Whether all contacts without slip can stick while those that slip continue to slip, and the forces of this
@@ -165,7 +169,7 @@ pub(crate) fn found(
 pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     let modes: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
     let found = prescribed(problem, &modes, None, Wanted::Decision).ok()?;
-    (found.margin >= -FITS && found.f > 0.0 && held(problem, &modes, &found.acceleration)).then_some(found)
+    (found.margin >= -FITS && found.parts && held(problem, &modes, &found.acceleration)).then_some(found)
 }
 
 /// An acceleration along a plane without friction below this share of the free ones is a rounding error.
@@ -323,28 +327,43 @@ impl Unknowns {
         }
     }
 
-    /// See [`Admissible::f`].
-    fn jam(&self, problem: &Problem<'_>, elimination: &Elimination) -> (f64, Option<usize>) {
-        let (m, mut least) = (self.list.len(), (1.0, None));
-        for (a, unknown) in self.list.iter().enumerate() {
-            let slides = unknown.axis == 0 && (unknown.along.y != 0.0 || unknown.along.z != 0.0);
-            if !slides {
-                continue;
-            }
-            let row = 3 * unknown.contact;
-            let own = problem.w[(row, row)];
-            let f = if elimination.rank == m {
+    /// The distance from a jam, and the contact that jams.
+    fn jam(
+        &self,
+        problem: &Problem<'_>,
+        matrix: &Square,
+        elimination: &Elimination,
+    ) -> (Distance, Option<usize>) {
+        let m = self.list.len();
+        let slides =
+            |unknown: &Unknown| unknown.axis == 0 && (unknown.along.y != 0.0 || unknown.along.z != 0.0);
+        let sliding: SmallVec<[usize; FEW]> = (0..m).filter(|&a| slides(&self.list[a])).collect();
+        let k = sliding.len();
+        let normal = |a: usize, b: usize| problem.w[(self.row(b), self.row(a))];
+        let distance = if elimination.rank == m {
+            let mut ratio = Square::zeros(k * k);
+            let mut own = Vector::zeros(k);
+            for (place, &a) in sliding.iter().enumerate() {
+                let from = &self.list[a];
+                // M_0 = M + (what friction takes).
+                let taken =
+                    vector(m, |b| normal(a, b) * (from.scale * self.list[b].scale) - matrix[a * m + b]);
+                let more = elimination.solve(&taken);
+                for (value, &b) in ratio[place * k..][..k].iter_mut().zip(&sliding) {
+                    *value = more[b] + if a == b { 1.0 } else { 0.0 };
+                }
                 let mut unit = Vector::zeros(m);
                 unit[a] = 1.0;
-                unknown.scale.powi(-2) / elimination.solve(&unit)[a] / own
-            } else {
-                let [t, s] = [1, 2].map(|axis| problem.w[(row, row + axis)]);
-                1.0 + (unknown.along.y * t + unknown.along.z * s) / own
-            };
-            if least.1.is_none() || f < least.0 {
-                least = (f, Some(unknown.contact));
+                own[place] = elimination.solve(&unit)[a] * from.scale.powi(2) * normal(a, a);
             }
-        }
-        least
+            Distance::new(&ratio, &own)
+        } else {
+            Distance::of_each(sliding.iter().map(|&a| {
+                let (row, along) = (self.row(a), self.list[a].along);
+                let [t, s] = [1, 2].map(|axis| problem.w[(row, row + axis)]);
+                1.0 + (along.y * t + along.z * s) / normal(a, a)
+            }))
+        };
+        (distance, distance.jams.map(|place| self.list[sliding[place]].contact))
     }
 }

@@ -13,8 +13,9 @@ use super::{
     solve,
 };
 
-/// Like [`solve`], with the forces of the modes; but a motion in which f of a contact is not positive, so that the next
-/// rounding error decides between impact and separation, is taken only if no other was found.
+/// Like [`solve`], with the forces of the modes; but a motion in which more force at a sliding contact draws the bodies
+/// together, so that the next rounding error decides between impact and separation, is taken only if no other was found; and
+/// one beyond a jam only if all others are.
 ///
 /// # Errors
 /// See [`Unsolved`].
@@ -24,19 +25,26 @@ pub(crate) fn solve_without_jam(
 ) -> Result<(Solution, Option<Admissible>), Unsolved> {
     let first = solve(problem, guess)?;
     let middle = with_modes(problem, &first.modes).ok();
-    if middle.as_ref().is_none_or(|middle| middle.f > 0.0) {
+    if middle.as_ref().is_none_or(|middle| middle.parts) {
         return Ok((first, middle));
     }
-    let lasts = |other: Solution| {
-        let middle = with_modes(problem, &other.modes).ok()?;
-        (middle.f > 0.0).then_some((other, Some(middle)))
-    };
-    let found = if problem.contacts() <= MOST_ENUMERATED {
-        enumerate(problem).into_iter().find_map(lasts)
+    let mut best = (first, middle);
+    let finite = |middle: &Option<Admissible>| middle.as_ref().is_some_and(|middle| middle.f > 0.0);
+    let found: Box<dyn Iterator<Item = Solution>> = if problem.contacts() <= MOST_ENUMERATED {
+        Box::new(enumerate(problem).into_iter())
     } else {
-        others(problem, &first.force).find_map(lasts)
+        Box::new(others(problem, &best.0.force))
     };
-    Ok(found.unwrap_or((first, middle)))
+    for other in found {
+        let middle = with_modes(problem, &other.modes).ok();
+        if middle.as_ref().is_some_and(|middle| middle.parts) {
+            return Ok((other, middle));
+        }
+        if finite(&middle) && !finite(&best.1) {
+            best = (other, middle);
+        }
+    }
+    Ok(best)
 }
 
 #[cfg(test)]
