@@ -3,12 +3,12 @@
 use nalgebra::{DVector, Vector2};
 
 use crate::event_location::Crossing;
-use crate::forces::Hold;
+use crate::forces::{Hold, nearest_to_jam};
 use crate::mode_changes::{Ending, FIRST};
 use crate::mode_selection::{Decision, choose};
 use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::pair::Friction;
-use crate::phase::{Closed, Leaving, Phase};
+use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::slip_end::{ENDING, has_passed, may_end, straight, time_of_slip};
 use crate::stepper::Step;
 use crate::transition::Transition;
@@ -100,7 +100,7 @@ impl Transition<'_> {
     pub(crate) fn jammed(&mut self, closed: &[Closed]) -> Result<(), SimulationError> {
         let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
         let place = match &here {
-            Ok(here) => here.forces.as_ref().and_then(|forces| forces.jams).unwrap_or(0),
+            Ok(here) => nearest_to_jam(&here.support, &here.holds, &mus(closed)),
             Err(Failure::Contact(contact, _)) => {
                 closed.iter().position(|closed| closed.contact == *contact).unwrap_or(0)
             }

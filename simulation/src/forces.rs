@@ -43,8 +43,6 @@ pub(crate) struct Forces {
     pub unique: bool,
     /// The distance from a jam ([`contact_problem::Admissible::f`]): f / m_nn of one sliding contact; 1 without.
     pub f: f64,
-    /// The index of the contact whose force grows most as it falls to zero.
-    pub jams: Option<usize>,
     /// Forces up to this are rounding errors, N.
     pub rounding: f64,
     /// The greatest acceleration of a contact without contact forces.
@@ -74,7 +72,8 @@ pub(crate) enum Lacking {
 
 /// Forces under which sticking contacts do not accelerate and sliding ones do not separate. If many forces
 /// give the same motion, the analytic centre of those that the laws allow is taken ([`contact_problem`]);
-/// `guess` only saves work. With [`Wanted::Motion`] any of these forces may be returned if no contact slips.
+/// `guess` only saves work. With [`Wanted::Motion`] and [`Wanted::Acceleration`] any of these forces may be returned if no
+/// contact slips.
 pub(crate) fn forces(
     support: &ClosedContacts,
     holds: &[Hold],
@@ -90,7 +89,6 @@ pub(crate) fn forces(
             acceleration: none,
             unique: true,
             f: 1.0,
-            jams: None,
             rounding,
             free: support.beta.amax(),
         });
@@ -98,17 +96,14 @@ pub(crate) fn forces(
     if let [hold] = holds {
         return single(support, *hold, mu[0]);
     }
-    let slips: SmallVec<[Option<Vector2<f64>>; FEW]> = holds.iter().map(Hold::direction).collect();
-    let modes: SmallVec<[Mode; FEW]> =
-        slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+    let (slips, modes) = modes(holds);
     let problem = support.problem(mu, &slips);
     let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Common)?;
     if !found.force.iter().all(|value| value.is_finite()) {
         return Err(Lacking::Common);
     }
-    if let Some(contact) = found.jams
-        && found.f <= 0.0
-    {
+    if found.f <= 0.0 {
+        let contact = contact_problem::nearest_to_jam(&problem, &modes).unwrap_or(0);
         let free_acceleration = support.beta[3 * contact];
         return Err(Lacking::Contact(contact, ContactError::Jam { free_acceleration }));
     }
@@ -117,10 +112,21 @@ pub(crate) fn forces(
         acceleration: found.acceleration,
         unique: found.unique,
         f: found.f,
-        jams: found.jams,
         rounding: support.least_force(),
         free: support.beta.amax(),
     })
+}
+
+/// The slips and modes of contacts in a problem.
+fn modes(holds: &[Hold]) -> (SmallVec<[Option<Vector2<f64>>; FEW]>, SmallVec<[Mode; FEW]>) {
+    let mode = |hold: &Hold| hold.direction().map_or(Mode::Stick, Mode::Slide);
+    (holds.iter().map(Hold::direction).collect(), holds.iter().map(mode).collect())
+}
+
+/// The sliding contact whose own force grows most towards a jam, by its index; the first one if none slides.
+pub(crate) fn nearest_to_jam(support: &ClosedContacts, holds: &[Hold], mu: &[f64]) -> usize {
+    let (slips, modes) = modes(holds);
+    contact_problem::nearest_to_jam(&support.problem(mu, &slips), &modes).unwrap_or(0)
 }
 
 /// A single contact: solved by the runtime.
@@ -138,7 +144,6 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
         acceleration: DVector::from_column_slice(answer.acceleration.as_slice()),
         unique: answer.force_is_unique,
         f: answer.margins.f.map_or(1.0, |f| f / matrix.nn),
-        jams: answer.margins.f.map(|_| 0),
         rounding: support.least_force(),
         free: support.beta.amax(),
     })

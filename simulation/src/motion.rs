@@ -268,7 +268,7 @@ impl<'a> Motion<'a> {
             let near = RefCell::new(guess.cloned().or_else(|| last.take()));
             let several = holds.len() > 1;
             let solve = |holds: &[Hold]| {
-                let found = forces(support, holds, mu, near.borrow().as_ref(), Wanted::Motion)?;
+                let found = forces(support, holds, mu, near.borrow().as_ref(), Wanted::Acceleration)?;
                 if several {
                     keep(&mut near.borrow_mut(), &found.lambda);
                 }

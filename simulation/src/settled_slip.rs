@@ -36,7 +36,8 @@ pub(crate) fn settled(
         return omegas;
     }
     let mu: Vec<f64> = closed.iter().map(|closed| closed.mu).collect();
-    let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, None, Wanted::Motion);
+    let solve =
+        |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, None, Wanted::Acceleration);
     let candidates: Vec<usize> = (0..closed.len())
         .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES * scales.time))
         .collect();

@@ -224,7 +224,7 @@ pub(crate) fn inconsistent(
 fn solved(motion: &Motion<'_>, support: &ClosedContacts, holds: &[Hold]) -> Result<Forces, Lacking> {
     let mut mu = Vec::with_capacity(holds.len());
     motion.rub(support, holds, &mut mu).map_err(|_| Lacking::Common)?;
-    forces(support, holds, &mu, None, Wanted::Motion)
+    forces(support, holds, &mu, None, Wanted::Acceleration)
 }
 
 /// The rates of coordinates and speeds in this state under other forces.

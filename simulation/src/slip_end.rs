@@ -46,7 +46,7 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
     let mut rates = |phi: f64| -> Result<(f64, f64), Lacking> {
         let d = Vector2::new(phi.cos(), phi.sin());
         holds[place] = Hold::Slide(d);
-        let a = forces(support, &holds, mu, None, Wanted::Motion)?.acceleration;
+        let a = forces(support, &holds, mu, None, Wanted::Acceleration)?.acceleration;
         let a = Vector2::new(a[3 * place + 1], a[3 * place + 2]);
         Ok((a.dot(&d), d.x * a.y - d.y * a.x))
     };

@@ -343,7 +343,6 @@ fn a_jam_is_where_forces_grow_without_bound() {
         if place != -25 {
             let (found, determinant) = (found(own), own + 0.25);
             assert!((found.f - determinant).abs() < 1e-13, "{own}: {}", found.f);
-            assert!(place == 0 || found.parts == (place > 0), "{own}");
             assert!((found.force[0] * determinant - (own - 0.05)).abs() < 1e-12, "{own}");
         }
     }

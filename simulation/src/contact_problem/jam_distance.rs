@@ -4,58 +4,65 @@
 
 use smallvec::SmallVec;
 
-use super::linear::{Elimination, Square};
+use super::linear::{Elimination, FEW, Square};
 
-/// The distance of sliding contacts from a jam.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Distance {
-    /// See [`super::Admissible::f`].
-    pub f: f64,
-    /// The contact whose own force grows most as f falls to zero, as a place among the sliding ones.
-    pub jams: Option<usize>,
-    /// See [`super::Admissible::parts`].
-    pub parts: bool,
-}
-
-impl Distance {
-    /// Of k contacts, while all others keep their modes. `ratio` is M^-1 M_0, M being the matrix of normal accelerations by
-    /// normal forces with their friction, and M_0 the same without friction: k x k, by columns. `own` are the diagonal
-    /// entries of M^-1, each times its W_nn.
-    pub fn new(ratio: &Square, own: &[f64]) -> Self {
-        let jams = (0..own.len()).max_by(|&a, &b| own[a].abs().total_cmp(&own[b].abs()));
-        Self { f: least_of_groups(ratio, own.len()), jams, parts: own.iter().all(|&own| own > 0.0) }
+/// det M / det M_0 of n unknowns, for the matrix M by columns, its elimination, of full rank, and M_0, the same without
+/// friction where contacts slide, which is symmetric and positive definite. Of unknowns that do not depend on one another
+/// it is the least: the product does not tell whether two groups of them have jammed.
+pub(super) fn distance(matrix: &Square, elimination: &Elimination, smooth: Square, n: usize) -> f64 {
+    let groups = groups(matrix, n);
+    if groups.iter().all(|&group| group == 0) {
+        return ratio(elimination, smooth, n);
     }
-
-    /// Of contacts whose forces are not unique: the least f of one by itself.
-    pub fn of_each(f: impl Iterator<Item = f64>) -> Self {
-        let least = f.enumerate().min_by(|(_, one), (_, other)| one.total_cmp(other));
-        let f = least.map_or(1.0, |(_, f)| f);
-        Self { f, jams: least.map(|(place, _)| place), parts: f > 0.0 }
-    }
-}
-
-/// The least of det M / det M_0 of the groups of contacts that depend on one another; the product of all does not tell
-/// whether two groups have jammed. 1 without contacts.
-fn least_of_groups(ratio: &Square, k: usize) -> f64 {
-    let groups = groups(ratio, k);
-    let of = |group: usize| -> SmallVec<[usize; 8]> { (0..k).filter(|&i| groups[i] == group).collect() };
-    let distance = |group: SmallVec<[usize; 8]>| {
-        let size = group.len();
-        let mut block = Square::zeros(size * size);
-        for (place, value) in block.iter_mut().enumerate() {
-            *value = ratio[group[place / size] * k + group[place % size]];
-        }
-        1.0 / Elimination::new(block, size, 0.0).determinant()
+    let of = |group: usize| -> SmallVec<[usize; FEW]> { (0..n).filter(|&i| groups[i] == group).collect() };
+    let distance = |group: SmallVec<[usize; FEW]>| {
+        let elimination = Elimination::new(block(matrix, n, &group), group.len(), 0.0);
+        ratio(&elimination, block(&smooth, n, &group), group.len())
     };
-    (0..k).map(of).filter(|group| !group.is_empty()).map(distance).reduce(f64::min).unwrap_or(1.0)
+    (0..n).map(of).filter(|group| !group.is_empty()).map(distance).fold(f64::INFINITY, f64::min)
 }
 
-/// For each contact the first one of its group.
-fn groups(ratio: &Square, k: usize) -> SmallVec<[usize; 8]> {
-    let mut groups: SmallVec<[usize; 8]> = (0..k).collect();
-    for (place, _) in ratio.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
-        let (one, other) = (groups[place / k], groups[place % k]);
-        groups.iter_mut().filter(|group| **group == one.max(other)).for_each(|group| *group = one.min(other));
+/// The determinant of an eliminated matrix over that of a symmetric, positive definite one.
+fn ratio(elimination: &Elimination, mut smooth: Square, n: usize) -> f64 {
+    let mut ratio = elimination.parity();
+    for (j, pivot) in elimination.pivots().enumerate() {
+        let (left, right) = smooth.split_at_mut((j + 1) * n);
+        let column = &left[j * n..];
+        ratio *= pivot / column[j];
+        for (next, right) in right.chunks_exact_mut(n).enumerate() {
+            let next = j + 1 + next;
+            let factor = column[next] / column[j];
+            right[next..].iter_mut().zip(&column[next..]).for_each(|(entry, left)| *entry -= factor * left);
+        }
+    }
+    ratio
+}
+
+/// The rows and columns of a group.
+fn block(matrix: &Square, n: usize, group: &[usize]) -> Square {
+    let mut block = Square::zeros(group.len() * group.len());
+    for (place, value) in block.iter_mut().enumerate() {
+        *value = matrix[group[place / group.len()] * n + group[place % group.len()]];
+    }
+    block
+}
+
+/// For each unknown the first one of its group.
+fn groups(matrix: &Square, n: usize) -> SmallVec<[usize; FEW]> {
+    let mut groups: SmallVec<[usize; FEW]> = (0..n).collect();
+    let mut more = n - 1;
+    for (column, entries) in matrix.chunks_exact(n).enumerate() {
+        for (row, _) in entries.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
+            let (one, other) = (groups[column], groups[row]);
+            if one != other {
+                let (first, last) = (one.min(other), one.max(other));
+                groups.iter_mut().filter(|group| **group == last).for_each(|group| *group = first);
+                more -= 1;
+                if more == 0 {
+                    return groups;
+                }
+            }
+        }
     }
     groups
 }
@@ -64,30 +71,38 @@ fn groups(ratio: &Square, k: usize) -> SmallVec<[usize; 8]> {
 mod tests {
     use super::*;
 
-    fn least(rows: &[&[f64]]) -> f64 {
-        let k = rows.len();
-        let mut ratio = Square::zeros(k * k);
-        ratio.iter_mut().enumerate().for_each(|(place, value)| *value = rows[place % k][place / k]);
-        least_of_groups(&ratio, k)
+    fn square(rows: &[&[f64]]) -> Square {
+        let n = rows.len();
+        let mut square = Square::zeros(n * n);
+        square.iter_mut().enumerate().for_each(|(place, value)| *value = rows[place % n][place / n]);
+        square
+    }
+
+    fn of(rows: &[&[f64]], smooth: &[&[f64]]) -> f64 {
+        let (matrix, n) = (square(rows), rows.len());
+        distance(&matrix, &Elimination::new(matrix.clone(), n, 0.0), square(smooth), n)
     }
 
     /// Contacts of two bodies that jam at once, whose determinant is positive.
     #[test]
     fn contacts_of_two_bodies_do_not_hide_each_others_jams() {
-        for (one, other, expected) in [(2.0, 4.0, 0.25), (-2.0, 4.0, -0.5), (-2.0, -4.0, -0.5)] {
-            assert_eq!(least(&[&[one, 0.0], &[0.0, other]]), expected);
+        for (one, other, expected) in [(2.0, 4.0, 1.0), (-2.0, 4.0, -1.0), (-2.0, -8.0, -2.0)] {
+            assert_eq!(of(&[&[one, 0.0], &[0.0, other]], &[&[2.0, 0.0], &[0.0, 4.0]]), expected);
         }
-        assert_eq!(least(&[&[1.0, 0.0, 2.0], &[0.0, -4.0, 0.0], &[-1.0, 0.0, 2.0]]), -0.25);
-        assert_eq!(least(&[]), 1.0);
+        let smooth: [&[f64]; 3] = [&[1.0, 0.0, 0.0], &[0.0, 2.0, 0.0], &[0.0, 0.0, 1.0]];
+        assert_eq!(of(&[&[1.0, 0.0, 2.0], &[0.0, -4.0, 0.0], &[-1.0, 0.0, 2.0]], &smooth), -2.0);
     }
 
-    /// The determinant counts exchanged rows and columns.
+    /// Exchanged rows and columns count, and so does what couples the contacts without friction.
     #[test]
-    fn signs_of_determinants() {
-        let near = |one: f64, other: f64| (one * other - 1.0).abs() < 1e-14;
-        assert!(near(least(&[&[1.0, 5.0], &[-5.0, 1.0]]), 26.0));
-        assert!(near(least(&[&[1.0, 5.0], &[5.0, 1.0]]), -24.0));
-        assert!(near(least(&[&[0.0, 5.0, 1.0], &[1.0, 0.0, 5.0], &[5.0, 1.0, 0.0]]), 126.0));
-        assert!(near(least(&[&[0.0, 5.0, 1.0], &[5.0, 1.0, 0.0], &[1.0, 0.0, 5.0]]), -126.0));
+    fn a_ratio_of_determinants() {
+        let near = |one: f64, other: f64| (one - other).abs() < 1e-13 * other.abs();
+        let smooth: [&[f64]; 2] = [&[2.0, 1.0], &[1.0, 3.0]];
+        assert!(near(of(&[&[1.0, 5.0], &[-5.0, 1.0]], &smooth), 26.0 / 5.0));
+        assert!(near(of(&[&[1.0, 5.0], &[5.0, 1.0]], &smooth), -24.0 / 5.0));
+        let smooth: [&[f64]; 3] = [&[2.0, 1.0, 0.5], &[1.0, 3.0, 0.0], &[0.5, 0.0, 1.0]];
+        assert!(near(of(&[&[0.0, 5.0, 1.0], &[1.0, 0.0, 5.0], &[5.0, 1.0, 0.0]], &smooth), 126.0 / 4.25));
+        assert!(near(of(&[&[0.0, 5.0, 1.0], &[5.0, 1.0, 0.0], &[1.0, 0.0, 5.0]], &smooth), -126.0 / 4.25));
+        assert!(near(of(&smooth, &smooth), 1.0));
     }
 }

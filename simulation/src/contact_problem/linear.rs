@@ -128,10 +128,19 @@ impl Elimination {
         Self { lu, rows, columns, n, rank, even }
     }
 
-    /// The determinant.
-    pub fn determinant(&self) -> f64 {
-        let sign = if self.even { 1.0 } else { -1.0 };
-        (0..self.n).fold(sign, |product, i| product * self.entry(i, i))
+    /// The pivots up to the rank; their product is the determinant of P A Q.
+    pub fn pivots(&self) -> impl Iterator<Item = f64> {
+        (0..self.rank).map(|i| self.entry(i, i))
+    }
+
+    /// The sign of the determinant of P Q.
+    pub fn parity(&self) -> f64 {
+        if self.even { 1.0 } else { -1.0 }
+    }
+
+    /// The sign of the determinant of A, of full rank.
+    pub fn sign(&self) -> f64 {
+        self.pivots().fold(self.parity(), |sign, pivot| sign * pivot.signum())
     }
 
     fn entry(&self, row: usize, column: usize) -> f64 {

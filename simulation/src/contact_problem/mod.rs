@@ -51,6 +51,6 @@ pub(crate) use self::{
     common_slip::slip_together,
     motion::is_slow,
     near::nearly,
-    prescribed::{UNHELD, Wanted, found},
+    prescribed::{UNHELD, Wanted, found, nearest_to_jam},
     without_jam::solve_without_jam,
 };

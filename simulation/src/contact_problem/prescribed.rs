@@ -10,7 +10,7 @@ use super::{
     Mode, Problem, Unsolved,
     centre::{By, centre},
     cone::{Cone, least_reserve},
-    jam_distance::Distance,
+    jam_distance::distance,
     linear::{Elimination, FEW, Square, Vector, residual, vector},
     problem::three,
 };
@@ -36,10 +36,6 @@ pub struct Admissible {
     /// grow without bound, and there only. Of one contact it is the derivative of a_n with respect to lambda_n, divided
     /// by W_nn. 1 without sliding contacts; the least one of contacts that do not depend on one another.
     pub f: f64,
-    /// The contact whose own force grows most as f falls to zero.
-    pub jams: Option<usize>,
-    /// Whether more force at any sliding contact drives it apart while all others keep their modes.
-    pub parts: bool,
 }
 
 /// Why contacts cannot keep their modes.
@@ -93,6 +89,9 @@ pub(crate) enum Wanted {
     Decision,
     /// Any forces if all give the same motion, that is, if no contact slips.
     Motion,
+    /// The same for accelerations in many directions of slip: of the distance from a jam only the sign is told where forces
+    /// are unique, as 1 or -1.
+    Acceleration,
     /// Any forces of these modes.
     Any,
 }
@@ -132,10 +131,18 @@ pub(crate) fn found(
     unknowns.consistent(problem, &matrix, &x, &left)?;
     let unique = elimination.rank == m;
     let slides = modes.iter().any(|mode| matches!(mode, Mode::Slide(_)));
-    if wanted == Wanted::Any || wanted == Wanted::Motion && (unique || !slides) {
+    let any = match wanted {
+        Wanted::Any => true,
+        Wanted::Motion | Wanted::Acceleration => unique || !slides,
+        Wanted::Centre | Wanted::Decision => false,
+    };
+    if any {
         let (force, acceleration) = unknowns.motion(problem, &x);
-        let (Distance { f, parts, .. }, jams) = unknowns.jam(problem, &matrix, &elimination);
-        return Ok(Admissible { force, acceleration, margin: 0.0, least: None, unique, f, jams, parts });
+        let f = match wanted {
+            Wanted::Acceleration if unique => elimination.sign(),
+            _ => unknowns.distance_from_jam(problem, &matrix, &elimination),
+        };
+        return Ok(Admissible { force, acceleration, margin: 0.0, least: None, unique, f });
     }
     let mut x = DVector::from_column_slice(&x);
     let cones = unknowns.cones(problem);
@@ -159,9 +166,9 @@ pub(crate) fn found(
     }
     let least = (0..cones.len()).min_by(|&a, &b| cones[a].reserve(&x).total_cmp(&cones[b].reserve(&x)));
     let (force, acceleration) = unknowns.motion(problem, x.as_slice());
-    let (Distance { f, parts, .. }, jams) = unknowns.jam(problem, &matrix, &elimination);
+    let f = unknowns.distance_from_jam(problem, &matrix, &elimination);
     let least = least.map(|cone| unknowns.list[cones[cone].normal].contact);
-    Ok(Admissible { force, acceleration, margin, least, unique, f, jams, parts })
+    Ok(Admissible { force, acceleration, margin, least, unique, f })
 }
 
 /// Whether all contacts without slip can stick while those that slip continue to slip, and the forces of this
@@ -169,7 +176,8 @@ pub(crate) fn found(
 pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     let modes: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
     let found = prescribed(problem, &modes, None, Wanted::Decision).ok()?;
-    (found.margin >= -FITS && found.parts && held(problem, &modes, &found.acceleration)).then_some(found)
+    (found.margin >= -FITS && parts(problem, &modes) && held(problem, &modes, &found.acceleration))
+        .then_some(found)
 }
 
 /// An acceleration along a plane without friction below this share of the free ones is a rounding error.
@@ -203,6 +211,13 @@ struct Unknown {
     /// The force of a unit of the unknown.
     along: Vector3<f64>,
     scale: f64,
+}
+
+impl Unknown {
+    /// Whether it is a normal force with friction against slip.
+    fn slides(&self) -> bool {
+        self.axis == 0 && (self.along.y != 0.0 || self.along.z != 0.0)
+    }
 }
 
 struct Unknowns {
@@ -327,43 +342,62 @@ impl Unknowns {
         }
     }
 
-    /// The distance from a jam, and the contact that jams.
-    fn jam(
-        &self,
-        problem: &Problem<'_>,
-        matrix: &Square,
-        elimination: &Elimination,
-    ) -> (Distance, Option<usize>) {
+    /// See [`Admissible::f`].
+    fn distance_from_jam(&self, problem: &Problem<'_>, matrix: &Square, elimination: &Elimination) -> f64 {
         let m = self.list.len();
-        let slides =
-            |unknown: &Unknown| unknown.axis == 0 && (unknown.along.y != 0.0 || unknown.along.z != 0.0);
-        let sliding: SmallVec<[usize; FEW]> = (0..m).filter(|&a| slides(&self.list[a])).collect();
-        let k = sliding.len();
+        if !self.list.iter().any(Unknown::slides) {
+            return 1.0;
+        }
         let normal = |a: usize, b: usize| problem.w[(self.row(b), self.row(a))];
-        let distance = if elimination.rank == m {
-            let mut ratio = Square::zeros(k * k);
-            let mut own = Vector::zeros(k);
-            for (place, &a) in sliding.iter().enumerate() {
-                let from = &self.list[a];
-                // M_0 = M + (what friction takes).
-                let taken =
-                    vector(m, |b| normal(a, b) * (from.scale * self.list[b].scale) - matrix[a * m + b]);
-                let more = elimination.solve(&taken);
-                for (value, &b) in ratio[place * k..][..k].iter_mut().zip(&sliding) {
-                    *value = more[b] + if a == b { 1.0 } else { 0.0 };
+        if elimination.rank == m {
+            let mut smooth = matrix.clone();
+            for (column, from) in smooth.chunks_exact_mut(m).zip(&self.list).filter(|(_, from)| from.slides())
+            {
+                let own = 3 * from.contact;
+                for (value, to) in column.iter_mut().zip(&self.list) {
+                    *value = problem.w[(3 * to.contact + to.axis, own)] * (to.scale * from.scale);
                 }
-                let mut unit = Vector::zeros(m);
-                unit[a] = 1.0;
-                own[place] = elimination.solve(&unit)[a] * from.scale.powi(2) * normal(a, a);
             }
-            Distance::new(&ratio, &own)
-        } else {
-            Distance::of_each(sliding.iter().map(|&a| {
-                let (row, along) = (self.row(a), self.list[a].along);
-                let [t, s] = [1, 2].map(|axis| problem.w[(row, row + axis)]);
-                1.0 + (along.y * t + along.z * s) / normal(a, a)
-            }))
+            return distance(matrix, elimination, smooth, m);
+        }
+        let own = |a: usize| {
+            let (row, along) = (self.row(a), self.list[a].along);
+            let [t, s] = [1, 2].map(|axis| problem.w[(row, row + axis)]);
+            1.0 + (along.y * t + along.z * s) / normal(a, a)
         };
-        (distance, distance.jams.map(|place| self.list[sliding[place]].contact))
+        (0..m).filter(|&a| self.list[a].slides()).map(own).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// For each sliding contact its normal force by its own normal acceleration while all others keep their modes, (M^-1)_ii, times
+/// its W_nn. Where forces are not unique, that of the contact by itself.
+fn own_growths(problem: &Problem<'_>, modes: &[Mode]) -> SmallVec<[(usize, f64); FEW]> {
+    let unknowns = Unknowns::new(problem, modes);
+    let m = unknowns.list.len();
+    let matrix = unknowns.matrix(problem);
+    let elimination = Elimination::new(matrix.clone(), m, SINGULAR);
+    let growth = |(a, unknown): (usize, &Unknown)| {
+        let row = unknowns.row(a);
+        let own = problem.w[(row, row)] * unknown.scale.powi(2);
+        let mut unit = Vector::zeros(m);
+        unit[a] = 1.0;
+        let growth =
+            if elimination.rank == m { elimination.solve(&unit)[a] } else { 1.0 / matrix[a * m + a] };
+        (unknown.contact, own * growth)
+    };
+    unknowns.list.iter().enumerate().filter(|(_, unknown)| unknown.slides()).map(growth).collect()
+}
+
+/// Whether more force at any sliding contact drives it apart while all others keep their modes.
+pub(super) fn parts(problem: &Problem<'_>, modes: &[Mode]) -> bool {
+    own_growths(problem, modes).iter().all(|(_, growth)| *growth > 0.0)
+}
+
+/// The sliding contact whose own force grows most towards a jam.
+pub(crate) fn nearest_to_jam(problem: &Problem<'_>, modes: &[Mode]) -> Option<usize> {
+    let growths = own_growths(problem, modes);
+    growths
+        .iter()
+        .max_by(|(_, one), (_, other)| one.abs().total_cmp(&other.abs()))
+        .map(|(contact, _)| *contact)
 }

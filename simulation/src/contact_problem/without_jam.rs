@@ -9,7 +9,7 @@ use super::{
     another::others,
     directions::MOST_ENUMERATED,
     enumerate::enumerate,
-    prescribed::{Admissible, with_modes},
+    prescribed::{Admissible, parts, with_modes},
     solve,
 };
 
@@ -25,7 +25,7 @@ pub(crate) fn solve_without_jam(
 ) -> Result<(Solution, Option<Admissible>), Unsolved> {
     let first = solve(problem, guess)?;
     let middle = with_modes(problem, &first.modes).ok();
-    if middle.as_ref().is_none_or(|middle| middle.parts) {
+    if middle.is_none() || parts(problem, &first.modes) {
         return Ok((first, middle));
     }
     let mut best = (first, middle);
@@ -37,7 +37,7 @@ pub(crate) fn solve_without_jam(
     };
     for other in found {
         let middle = with_modes(problem, &other.modes).ok();
-        if middle.as_ref().is_some_and(|middle| middle.parts) {
+        if middle.is_some() && parts(problem, &other.modes) {
             return Ok((other, middle));
         }
         if finite(&middle) && !finite(&best.1) {
