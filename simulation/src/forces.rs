@@ -96,7 +96,7 @@ pub(crate) fn forces(
     if let [hold] = holds {
         return single(support, *hold, mu[0]);
     }
-    let (slips, modes) = modes(holds);
+    let (slips, modes) = (slips(holds), modes(holds));
     let problem = support.problem(mu, &slips);
     let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Common)?;
     if !found.force.iter().all(|value| value.is_finite()) {
@@ -117,15 +117,19 @@ pub(crate) fn forces(
     })
 }
 
-/// The slips and modes of contacts in a problem.
-fn modes(holds: &[Hold]) -> (SmallVec<[Option<Vector2<f64>>; FEW]>, SmallVec<[Mode; FEW]>) {
-    let mode = |hold: &Hold| hold.direction().map_or(Mode::Stick, Mode::Slide);
-    (holds.iter().map(Hold::direction).collect(), holds.iter().map(mode).collect())
+/// The directions of slip of contacts.
+fn slips(holds: &[Hold]) -> SmallVec<[Option<Vector2<f64>>; FEW]> {
+    holds.iter().map(Hold::direction).collect()
+}
+
+/// The modes of contacts in a problem.
+fn modes(holds: &[Hold]) -> SmallVec<[Mode; FEW]> {
+    holds.iter().map(|hold| hold.direction().map_or(Mode::Stick, Mode::Slide)).collect()
 }
 
 /// The sliding contact whose own force grows most towards a jam, by its index; the first one if none slides.
 pub(crate) fn nearest_to_jam(support: &ClosedContacts, holds: &[Hold], mu: &[f64]) -> usize {
-    let (slips, modes) = modes(holds);
+    let (slips, modes) = (slips(holds), modes(holds));
     contact_problem::nearest_to_jam(&support.problem(mu, &slips), &modes).unwrap_or(0)
 }
 
