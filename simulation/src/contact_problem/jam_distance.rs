@@ -5,11 +5,12 @@
 use smallvec::SmallVec;
 
 use super::linear::{Elimination, FEW, Square};
+use super::prescribed::SINGULAR;
 
 /// det M / det M_0 of n unknowns, for the matrix M by columns, its elimination, of full rank, and M_0, the same without
 /// friction where contacts slide, which is symmetric and positive definite. Of unknowns that do not depend on one another
-/// it is the least: the product does not tell whether two groups of them have jammed.
-pub(super) fn distance(matrix: &Square, elimination: &Elimination, smooth: Square, n: usize) -> f64 {
+/// it is the least: the product does not tell whether two groups of them have jammed. `None` if M_0 is singular.
+pub(super) fn distance(matrix: &Square, elimination: &Elimination, smooth: Square, n: usize) -> Option<f64> {
     let groups = groups(matrix, n);
     if groups.iter().all(|&group| group == 0) {
         return ratio(elimination, smooth, n);
@@ -19,15 +20,23 @@ pub(super) fn distance(matrix: &Square, elimination: &Elimination, smooth: Squar
         let elimination = Elimination::new(block(matrix, n, &group), group.len(), 0.0);
         ratio(&elimination, block(&smooth, n, &group), group.len())
     };
-    (0..n).map(of).filter(|group| !group.is_empty()).map(distance).fold(f64::INFINITY, f64::min)
+    (0..n)
+        .map(of)
+        .filter(|group| !group.is_empty())
+        .map(distance)
+        .try_fold(f64::INFINITY, |least, f| Some(least.min(f?)))
 }
 
 /// The determinant of an eliminated matrix over that of a symmetric, positive definite one.
-fn ratio(elimination: &Elimination, mut smooth: Square, n: usize) -> f64 {
+fn ratio(elimination: &Elimination, mut smooth: Square, n: usize) -> Option<f64> {
     let mut ratio = elimination.parity();
+    let least = SINGULAR * smooth.iter().step_by(n + 1).fold(0.0, |most: f64, entry| most.max(*entry));
     for (j, pivot) in elimination.pivots().enumerate() {
         let (left, right) = smooth.split_at_mut((j + 1) * n);
         let column = &left[j * n..];
+        if column[j] <= least {
+            return None;
+        }
         ratio *= pivot / column[j];
         for (next, right) in right.chunks_exact_mut(n).enumerate() {
             let next = j + 1 + next;
@@ -35,7 +44,7 @@ fn ratio(elimination: &Elimination, mut smooth: Square, n: usize) -> f64 {
             right[next..].iter_mut().zip(&column[next..]).for_each(|(entry, left)| *entry -= factor * left);
         }
     }
-    ratio
+    Some(ratio)
 }
 
 /// The rows and columns of a group.
@@ -80,7 +89,7 @@ mod tests {
 
     fn of(rows: &[&[f64]], smooth: &[&[f64]]) -> f64 {
         let (matrix, n) = (square(rows), rows.len());
-        distance(&matrix, &Elimination::new(matrix.clone(), n, 0.0), square(smooth), n)
+        distance(&matrix, &Elimination::new(matrix.clone(), n, 0.0), square(smooth), n).unwrap()
     }
 
     /// Contacts of two bodies that jam at once, whose determinant is positive.
@@ -104,5 +113,8 @@ mod tests {
         assert!(near(of(&[&[0.0, 5.0, 1.0], &[1.0, 0.0, 5.0], &[5.0, 1.0, 0.0]], &smooth), 126.0 / 4.25));
         assert!(near(of(&[&[0.0, 5.0, 1.0], &[5.0, 1.0, 0.0], &[1.0, 0.0, 5.0]], &smooth), -126.0 / 4.25));
         assert!(near(of(&smooth, &smooth), 1.0));
+        let matrix = square(&[&[1.0, 5.0], &[-5.0, 1.0]]);
+        let elimination = Elimination::new(matrix.clone(), 2, 0.0);
+        assert!(distance(&matrix, &elimination, square(&[&[1.0, 1.0], &[1.0, 1.0 + 1e-12]]), 2).is_none());
     }
 }

@@ -358,7 +358,9 @@ impl Unknowns {
                     *value = problem.w[(3 * to.contact + to.axis, own)] * (to.scale * from.scale);
                 }
             }
-            return distance(matrix, elimination, smooth, m);
+            if let Some(distance) = distance(matrix, elimination, smooth, m) {
+                return distance;
+            }
         }
         let own = |a: usize| {
             let (row, along) = (self.row(a), self.list[a].along);
