@@ -145,7 +145,9 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
         return bad(format!("differences cost less than their squares from {size} on: it must be positive"));
     }
     let rise = |pair: &[f64]| pair[0] < pair[1];
-    if task.horizons.iter().any(|horizon| horizon.is_nan() || *horizon <= 0.0) || !task.horizons.windows(2).all(rise) {
+    if task.horizons.iter().any(|horizon| horizon.is_nan() || *horizon <= 0.0)
+        || !task.horizons.windows(2).all(rise)
+    {
         return bad("horizons must be positive and rise".to_owned());
     }
     if task.starts == 0 {

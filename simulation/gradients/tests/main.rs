@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod common;
+mod contact_tasks;
 mod cost;
 mod differences;
 mod doubled_ball;
