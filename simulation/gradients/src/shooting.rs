@@ -363,7 +363,7 @@ mod tests {
         // An event at the middle moves the node to an end of its interval, ..
         assert_eq!(times(&[0.5], 2), [0.3]);
         // .. and between two events it stands in their middle.
-        assert_eq!(times(&[0.4, 0.7], 2), [0.3]);
+        assert_eq!(times(&[0.4, 0.7], 2), [0.55]);
         assert_eq!(times(&[0.31, 0.69], 2), [0.5]);
     }
 }

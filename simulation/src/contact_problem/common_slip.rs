@@ -13,8 +13,8 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector2};
 
 use super::{
     Mode, Problem,
-    linear::{Elimination, Square, Vector, vector},
-    prescribed::{Admissible, SINGULAR, with_modes_near},
+    linear::{Elimination, SINGULAR, Square, Vector, vector},
+    prescribed::{Admissible, with_modes_near},
 };
 
 /// Largest number of Newton steps, and the change of directions that counts as zero, rad.

@@ -13,8 +13,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{
     Mode, Problem,
-    linear::{Elimination, Square, Vector, vector},
-    prescribed::SINGULAR,
+    linear::{Elimination, SINGULAR, Square, Vector, vector},
 };
 
 /// A mode whose direction may be unknown.

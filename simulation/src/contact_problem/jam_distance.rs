@@ -4,8 +4,7 @@
 
 use smallvec::SmallVec;
 
-use super::linear::{Elimination, FEW, Square};
-use super::prescribed::SINGULAR;
+use super::linear::{Elimination, FEW, SINGULAR, Square};
 
 /// det M / det M_0 of n unknowns, for the matrix M by columns, its elimination, of full rank, and M_0, the same without
 /// friction where contacts slide, which is symmetric and positive definite. Of unknowns that do not depend on one another

@@ -8,6 +8,9 @@ use nalgebra::DMatrix;
 
 /// Systems with at most this many unknowns are stored on the stack: four contacts that stick.
 pub(super) const FEW: usize = 12;
+/// Pivots up to this times the first one count as zero, in units in which W_ii of each contact has the trace
+/// one.
+pub(super) const SINGULAR: f64 = 1e-9;
 
 /// Numbers on the stack, or on the heap if there are many.
 #[derive(Clone)]

@@ -11,7 +11,7 @@ use super::{
     centre::{By, centre},
     cone::{Cone, least_reserve},
     jam_distance::distance,
-    linear::{Elimination, FEW, Square, Vector, residual, vector},
+    linear::{Elimination, FEW, SINGULAR, Square, Vector, residual, vector},
     problem::three,
 };
 
@@ -51,10 +51,6 @@ pub enum Impossible {
         left: f64,
     },
 }
-
-/// Pivots up to this times the first one count as zero, in units in which W_ii of each contact has the trace
-/// one.
-pub(super) const SINGULAR: f64 = 1e-9;
 
 /// Accelerations that forces should cancel may remain up to this part of their terms; this allows for a pivot
 /// that counted as zero and should not have.
