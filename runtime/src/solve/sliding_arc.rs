@@ -70,7 +70,6 @@ pub(super) struct ArcPoint<T: Arithmetic> {
     pub sigma: T,
 }
 
-#[cfg(feature = "lanes")]
 impl<T: Arithmetic> ArcPoint<T> {
     /// This point, and where `holds` the other one.
     #[inline(always)]
