@@ -11,7 +11,6 @@ use super::{
 use crate::scalar::{Real, constant};
 
 /// How a sliding arc ends.
-#[derive(Clone, Copy)]
 pub(crate) enum Slide<T: Real> {
     /// The law ended the collision while the contact slid with this velocity.
     Ended(State<T>, Vector2<T>),
