@@ -19,7 +19,7 @@ pub enum Return {
     /// Just after an event: the `count`-th of this name (`collision`, `stick`, ..) at this contact, or at
     /// any.
     At {
-        /// its name: [`EventKind::name`]
+        /// its name: [`EventKind::name`](hodograph_simulation::EventKind::name)
         event: String,
         /// index of the contact
         contact: Option<usize>,
