@@ -79,7 +79,7 @@ impl<T: RealField + Copy> Real for T {
     }
     #[inline(always)]
     fn primal(self) -> Self {
-        if T::refined() { convert(convert_unchecked::<T, f64>(self)) } else { self }
+        if <T as Real>::refined() { convert(convert_unchecked::<T, f64>(self)) } else { self }
     }
     #[inline(always)]
     fn default_epsilon() -> Self {
@@ -119,6 +119,194 @@ impl<T: RealField + Copy> Real for T {
     }
 }
 
+/// What the formulas of the solver ask of a number: any [`Real`], or the numbers of several collisions that undergo the
+/// same operations (`lanes`). Comparisons give a [`Mask`], by which each lane chooses its own case.
+pub(crate) trait Arithmetic:
+    nalgebra::Scalar
+    + Copy
+    + Zero
+    + One
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    type Mask: Mask;
+    /// Whether this holds several numbers.
+    const SEVERAL: bool;
+
+    /// One bit for each number, that of the first the lowest.
+    #[cfg(feature = "lanes")]
+    fn bits(holds: Self::Mask) -> u32;
+    fn refined() -> bool;
+    fn constant(value: f64) -> Self;
+    fn primal(self) -> Self;
+    fn default_epsilon() -> Self;
+    fn abs(self) -> Self;
+    fn sqrt(self) -> Self;
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// self < other
+    fn below(self, other: Self) -> Self::Mask;
+    /// Whether it is a finite number.
+    fn has_end(self) -> Self::Mask;
+    /// self <= other
+    fn at_most(self, other: Self) -> Self::Mask;
+    /// One number computes the case that holds. Of several, all compute both.
+    fn choose(holds: Self::Mask, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self;
+    fn choose_all<const N: usize>(
+        holds: Self::Mask,
+        yes: impl FnOnce() -> [Self; N],
+        no: impl FnOnce() -> [Self; N],
+    ) -> [Self; N];
+    /// The numbers of an iteration after one more step: of one number, which would not go on if it had ended, these are the
+    /// new ones; of several, those that have ended before keep the old ones.
+    fn iterated<const N: usize>(
+        goes_on: Self::Mask,
+        new: impl FnOnce() -> [Self; N],
+        old: [Self; N],
+    ) -> [Self; N];
+    /// [`Self::choose_all`] where cases cost much: several compute a case only if it holds for one of them.
+    fn decide<const N: usize>(
+        holds: Self::Mask,
+        yes: impl FnOnce() -> [Self; N],
+        no: impl FnOnce() -> [Self; N],
+    ) -> [Self; N];
+}
+
+/// The numbers of several collisions, which are loaded and stored together.
+#[cfg(feature = "lanes")]
+pub(crate) trait Together: Arithmetic {
+    /// How many.
+    const COUNT: usize;
+    /// From the number of each.
+    fn each(number: impl FnMut(usize) -> f64) -> Self;
+    /// The number of one of them.
+    fn of(self, place: usize) -> f64;
+    /// From numbers of each that stand in memory: they are loaded by fours.
+    fn load<'n, const N: usize>(numbers: impl Fn(usize) -> &'n [f64; N]) -> [Self; N];
+    /// Gives the numbers of each.
+    fn store<const N: usize>(numbers: &[Self; N], to: impl FnMut(usize, [f64; N]));
+}
+
+/// What holds for a number, or for each of several.
+pub(crate) trait Mask: Copy {
+    fn all() -> Self;
+    /// Whether it holds for any of them.
+    fn any(self) -> bool;
+    /// One number computes the second only where the first holds.
+    fn and(self, other: impl FnOnce() -> Self) -> Self;
+    fn or(self, other: impl FnOnce() -> Self) -> Self;
+    fn not(self) -> Self;
+    fn select(self, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self;
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn all() -> Self {
+        true
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn and(self, other: impl FnOnce() -> Self) -> Self {
+        self && other()
+    }
+    #[inline(always)]
+    fn or(self, other: impl FnOnce() -> Self) -> Self {
+        self || other()
+    }
+    #[inline(always)]
+    fn not(self) -> Self {
+        !self
+    }
+    #[inline(always)]
+    fn select(self, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
+        if self { yes() } else { no() }
+    }
+}
+
+impl<T: Real> Arithmetic for T {
+    type Mask = bool;
+    const SEVERAL: bool = false;
+
+    #[cfg(feature = "lanes")]
+    #[inline(always)]
+    fn bits(holds: bool) -> u32 {
+        u32::from(holds)
+    }
+    #[inline(always)]
+    fn refined() -> bool {
+        <T as Real>::refined()
+    }
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        <T as Real>::constant(value)
+    }
+    #[inline(always)]
+    fn primal(self) -> Self {
+        Real::primal(self)
+    }
+    #[inline(always)]
+    fn default_epsilon() -> Self {
+        <T as Real>::default_epsilon()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Real::abs(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Real::sqrt(self)
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Real::mul_add(self, a, b)
+    }
+    #[inline(always)]
+    fn has_end(self) -> bool {
+        Real::is_finite(&self)
+    }
+    #[inline(always)]
+    fn below(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn choose(holds: bool, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
+        if holds { yes() } else { no() }
+    }
+    #[inline(always)]
+    fn choose_all<const N: usize>(
+        holds: bool,
+        yes: impl FnOnce() -> [Self; N],
+        no: impl FnOnce() -> [Self; N],
+    ) -> [Self; N] {
+        if holds { yes() } else { no() }
+    }
+    #[inline(always)]
+    fn iterated<const N: usize>(_: bool, new: impl FnOnce() -> [Self; N], _: [Self; N]) -> [Self; N] {
+        new()
+    }
+    #[inline(always)]
+    fn decide<const N: usize>(
+        holds: bool,
+        yes: impl FnOnce() -> [Self; N],
+        no: impl FnOnce() -> [Self; N],
+    ) -> [Self; N] {
+        if holds { yes() } else { no() }
+    }
+}
+
 /// A function of doubles or singles that does not depend on the system, or that of other numbers: which, is
 /// known while compiling.
 #[inline(always)]
@@ -140,37 +328,48 @@ pub(crate) fn same_everywhere<T: Scalar>(
 
 /// A constant of the method in the scalar type.
 #[inline(always)]
-pub(crate) fn constant<T: Real>(value: f64) -> T {
+pub(crate) fn constant<T: Arithmetic>(value: f64) -> T {
     T::constant(value)
 }
 
 /// `a * b + c`, fused only with the feature of that name and where the target has the instruction: else every
 /// target computes the same bits.
 #[inline(always)]
-pub(crate) fn fma<T: Real>(a: T, b: T, c: T) -> T {
+pub(crate) fn fma<T: Arithmetic>(a: T, b: T, c: T) -> T {
     if cfg!(all(feature = "fused", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// `a * b + c * d`, of which one product is rounded.
 #[inline(always)]
-pub(crate) fn dot<T: Real>(a: T, b: T, c: T, d: T) -> T {
+pub(crate) fn dot<T: Arithmetic>(a: T, b: T, c: T, d: T) -> T {
     fma(a, b, c * d)
 }
 
 /// The larger of two numbers, by comparison alone (no order is defined beyond `PartialOrd`).
 #[inline(always)]
-pub(crate) fn larger<T: Real>(a: T, b: T) -> T {
-    if b > a { b } else { a }
+pub(crate) fn larger<T: Arithmetic>(a: T, b: T) -> T {
+    T::choose(a.below(b), || b, || a)
 }
 
 /// The smaller of two numbers, likewise.
 #[inline(always)]
-pub(crate) fn smaller<T: Real>(a: T, b: T) -> T {
-    if b < a { b } else { a }
+pub(crate) fn smaller<T: Arithmetic>(a: T, b: T) -> T {
+    T::choose(b.below(a), || b, || a)
+}
+
+/// [`Arithmetic::choose`] of vectors in the contact plane.
+#[inline(always)]
+pub(crate) fn either<T: Arithmetic>(
+    holds: T::Mask,
+    yes: impl FnOnce() -> Vector2<T>,
+    no: impl FnOnce() -> Vector2<T>,
+) -> Vector2<T> {
+    let [x, y] = T::choose_all(holds, || yes().into(), || no().into());
+    Vector2::new(x, y)
 }
 
 /// The length of a vector in the contact plane.
 #[inline(always)]
-pub(crate) fn length<T: Real>(v: &Vector2<T>) -> T {
+pub(crate) fn length<T: Arithmetic>(v: &Vector2<T>) -> T {
     dot(v.x, v.x, v.y, v.y).sqrt()
 }

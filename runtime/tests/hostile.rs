@@ -16,12 +16,12 @@ use std::collections::BTreeMap;
 
 /// Numbers as the solver sees them, as doubles.
 #[derive(Clone, Copy, Debug)]
-struct Case {
-    m: [f64; 6],
-    v: [f64; 3],
-    mu: f64,
-    e: f64,
-    law: Law,
+pub(crate) struct Case {
+    pub m: [f64; 6],
+    pub v: [f64; 3],
+    pub mu: f64,
+    pub e: f64,
+    pub law: Law,
     /// What the entries are known to, over the largest diagonal entry.
     noise: f64,
     /// The smallest number with all digits.
@@ -144,7 +144,7 @@ impl Tally {
 
 /// A contact of a rank, with all that hurts; `epsilon` is the rounding unit of the numbers, `range` the
 /// exponent of the largest.
-fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
+pub(crate) fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
     let rank = 1 + random.below(3);
     let bound = |x: f64| x.clamp(10.0_f64.powf(-range), 10.0_f64.powf(range));
     let wild = random.below(2) == 0;

@@ -27,5 +27,7 @@ mod slip;
 mod specialised;
 mod structure;
 mod theory;
+#[cfg(feature = "lanes")]
+mod together;
 mod types;
 mod without_collision;

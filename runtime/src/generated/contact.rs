@@ -114,6 +114,28 @@ pub fn resolve<T: Scalar>(
     Ok(resolved(contact, axes, reduced, approach, impact))
 }
 
+/// [`resolve`] for many contacts, each on its surface, several at once; `answer` is called once for each with its place, in any
+/// order.
+#[cfg(feature = "lanes")]
+pub fn resolve_each(
+    contacts: &[(Contact<f64>, crate::Surface<f64>)],
+    mut answer: impl FnMut(usize, Result<Resolved<f64>, ImpactError<f64>>),
+) {
+    let along = |contact: &Contact<f64>| {
+        let axes = contact_axes(contact);
+        (axes, along_slip(contact, axes))
+    };
+    let collisions = contacts.iter().map(|(contact, surface)| {
+        let (_, (reduced, approach)) = along(contact);
+        (reduced, approach, *surface)
+    });
+    crate::lanes::solve_each(collisions, |place, impact| {
+        let Some((contact, _)) = contacts.get(place) else { return };
+        let (axes, (reduced, approach)) = along(contact);
+        answer(place, impact.map(|impact| resolved(contact, axes, reduced, approach, impact)));
+    });
+}
+
 /// [`resolve`] as a part of the caller, under the law that `L` knows.
 ///
 /// # Errors

@@ -27,6 +27,8 @@ pub use arithmetic::*;
 pub use checks::*;
 #[doc(hidden)]
 pub use closed::{closed_contact, kept_contact, slip_noise};
+#[cfg(feature = "lanes")]
+pub use contact::resolve_each;
 pub use contact::{
     Contact, Resolved, along_axes, along_slip, contact_axes, resolve, resolve_inlined, resolve_structured,
     resolve_structured_inlined, resolve_without_collision,

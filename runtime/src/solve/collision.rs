@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     ContactSurface, Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
-    scalar::{Real, constant, larger, length},
+    scalar::{Arithmetic, Real, constant, larger, length},
 };
 
 /// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of
@@ -92,71 +92,129 @@ pub(crate) fn collide<A: Slides, T: Real>(
             return Err(ImpactError::NotFinite { value: approach.x });
         }
     }
-    let slips = slips(slip);
+    let slides = slips(slip);
     let mut sensitivity = Sensitivity::of_start(&contact, &tangential, slip);
-    let mut state = restitution.start();
-    let mut ended = None;
-    let (mut stops, mut endless) = (false, false);
-    if slips {
-        match A::slide(&contact, tangential, slip, &mut restitution) {
-            Slide::Ended(end, velocity) => ended = Some((end, velocity, Path::Sliding)),
-            Slide::Stopped(stopped) => {
-                restitution.grazing.moved(stopped.velocity);
-                (state, stops) = (stopped, true);
-            }
-            Slide::Endless(stopped) => (state, endless) = (stopped, true),
-            Slide::OverBudget(reached) => {
-                return Err(ImpactError::BudgetExceeded {
-                    quadratures: restitution.quadratures,
-                    normal_velocity: reached.velocity * speed,
-                });
-            }
+    let mut slid = Slid::none(&restitution);
+    if slides {
+        let slide = A::slide(&contact, tangential, slip, &mut restitution);
+        if let Some(reached) = slid.ends(slide, &mut restitution) {
+            return Err(ImpactError::BudgetExceeded {
+                quadratures: restitution.quadratures,
+                normal_velocity: reached * speed,
+            });
         }
     }
-    if ended.is_none() && !endless {
-        ended = after_slip(&contact, &mut state, slips, &mut restitution, &mut sensitivity);
+    let tangential = &tangential;
+    let begun = Begun { matrix, approach, speed, surface, contact: &contact, share, tangential, slip };
+    begun.concluded(&mut slid, slides, &mut restitution, &mut sensitivity)
+}
+
+/// A collision after its sliding arc.
+pub(super) struct Slid<T: Real> {
+    state: State<T>,
+    /// Its end, if that came during slip.
+    ended: Option<(State<T>, Vector2<T>, Path)>,
+    stops: bool,
+    endless: bool,
+}
+
+impl<T: Real> Slid<T> {
+    /// Without slip.
+    #[inline(always)]
+    pub fn none(restitution: &Restitution<T>) -> Self {
+        Self { state: restitution.start(), ended: None, stops: false, endless: false }
     }
-    let Some((mut end, velocity, path)) = ended else {
-        let normal_velocity = state.velocity * speed;
-        return Err(if normal_velocity.is_finite() {
-            ImpactError::Wedged { normal_velocity, law: surface.law }
-        } else {
-            ImpactError::NotFinite { value: normal_velocity }
-        });
-    };
-    restitution.verify(&contact, &tangential, slip, &end, &velocity)?;
-    if end.velocity < T::zero() {
-        // What rounding has left of a restitution too small to be seen; derivatives stay.
-        end.velocity -= end.velocity.primal();
+
+    /// Takes the end of the arc. If the arc exceeds its budget, the normal velocity that was reached.
+    #[inline(always)]
+    pub fn ends(&mut self, slide: Slide<T>, restitution: &mut Restitution<T>) -> Option<T> {
+        match slide {
+            Slide::Ended(end, velocity) => self.ended = Some((end, velocity, Path::Sliding)),
+            Slide::Stopped(stopped) => {
+                restitution.grazing.moved(stopped.velocity);
+                (self.state, self.stops) = (stopped, true);
+            }
+            Slide::Endless(stopped) => (self.state, self.endless) = (stopped, true),
+            Slide::OverBudget(reached) => return Some(reached.velocity),
+        }
+        None
     }
-    let slides = path == Path::Sliding && !stops;
-    sensitivity.ended(&contact, &mut restitution, &end, slides.then_some(&velocity));
-    let mut slip_end = stops.then_some(state);
-    if share < T::one() && slips {
-        let Restitution { first, latest, .. } = &mut restitution;
-        in_true_friction(share, [Some(&mut end), slip_end.as_mut(), first.as_mut(), latest.as_mut()]);
+}
+
+/// A collision as it began, with its contact in the units of the solver.
+pub(super) struct Begun<'a, T: Real> {
+    pub matrix: &'a ReducedMatrix<T>,
+    pub approach: &'a Vector3<T>,
+    /// The unit of velocity.
+    pub speed: T,
+    pub surface: &'a Surface<T>,
+    pub contact: &'a Contact<T>,
+    /// The friction that is calculated with over the true one.
+    pub share: T,
+    /// Slip of approach and its length.
+    pub tangential: &'a Vector2<T>,
+    pub slip: T,
+}
+
+impl<T: Real> Begun<'_, T> {
+    /// Follows the collision from the end of its sliding arc, if it `slips`, to its own end; verifies the outcome and
+    /// converts it to the units of the input.
+    #[inline(always)]
+    pub fn concluded(
+        &self,
+        slid: &mut Slid<T>,
+        slips: bool,
+        restitution: &mut Restitution<T>,
+        sensitivity: &mut Sensitivity,
+    ) -> Result<Impact<T>, ImpactError<T>> {
+        let Self { matrix, approach, speed, surface, contact, share, tangential, slip } = *self;
+        let Slid { state, ended, stops, endless } = slid;
+        let stops = *stops;
+        if ended.is_none() && !*endless {
+            *ended = after_slip(contact, state, slips, restitution, sensitivity);
+        }
+        let Some((mut end, velocity, path)) = *ended else {
+            let normal_velocity = state.velocity * speed;
+            return Err(if normal_velocity.is_finite() {
+                ImpactError::Wedged { normal_velocity, law: surface.law }
+            } else {
+                ImpactError::NotFinite { value: normal_velocity }
+            });
+        };
+        restitution.verify(contact, tangential, slip, &end, &velocity)?;
+        if end.velocity < T::zero() {
+            // What rounding has left of a restitution too small to be seen; derivatives stay.
+            end.velocity -= end.velocity.primal();
+        }
+        let slides = path == Path::Sliding && !stops;
+        sensitivity.ended(contact, restitution, &end, slides.then_some(&velocity));
+        let mut slip_end = stops.then_some(*state);
+        if share < T::one() && slips {
+            let Restitution { first, latest, .. } = &mut *restitution;
+            in_true_friction(share, [Some(&mut end), slip_end.as_mut(), first.as_mut(), latest.as_mut()]);
+        }
+        let scale = speed / matrix.nn;
+        let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
+        let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
+        let normal_work = end.work * scale * speed;
+        let contact_work = impulse.dot(&(separation + approach)) * constant(0.5);
+        // The sum is finite only if all terms are; which one is not is found in `in_range`.
+        let sum = impulse.x + impulse.y + impulse.z + separation.x + separation.y + separation.z;
+        if !(sum + (contact_work + normal_work)).is_finite() || impulse.x < least() {
+            in_range(&impulse, &separation, [contact_work, normal_work])?;
+        }
+        Ok(Impact {
+            approach: *approach,
+            impulse,
+            velocity: separation,
+            contact_work,
+            normal_work,
+            path,
+            compressions: restitution.compressions,
+            phases: phases(&Units { approach, scale, speed, contact }, restitution, slip_end, path),
+            sensitivity: *sensitivity,
+        })
     }
-    let scale = speed / matrix.nn;
-    let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
-    let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
-    let normal_work = end.work * scale * speed;
-    let contact_work = impulse.dot(&(separation + approach)) * constant(0.5);
-    // The sum is finite only if all terms are; which one is not is found in `in_range`.
-    let sum = impulse.x + impulse.y + impulse.z + separation.x + separation.y + separation.z;
-    if !(sum + (contact_work + normal_work)).is_finite() || impulse.x < least() {
-        in_range(&impulse, &separation, [contact_work, normal_work])?;
-    }
-    Ok(Impact {
-        approach: *approach,
-        impulse,
-        velocity: separation,
-        contact_work,
-        normal_work,
-        path,
-        compressions: restitution.compressions,
-        phases: phases(&Units { approach, scale, speed, contact: &contact }, &restitution, slip_end, path),
-        sensitivity,
-    })
 }
 
 /// Converts normal impulses below eps^2 from the limited friction that was calculated with to the true
@@ -205,9 +263,9 @@ pub(super) fn long<T: Real>(v: &Vector2<T>) -> T {
 
 /// Whether slip counts as present, in units where v_n1 = -1.
 #[inline(always)]
-pub(crate) fn slips<T: Real>(slip: T) -> bool {
+pub(crate) fn slips<T: Arithmetic>(slip: T) -> T::Mask {
     let eps = T::default_epsilon();
-    slip > eps * eps * eps * eps
+    (eps * eps * eps * eps).below(slip)
 }
 
 /// Slip and normal velocity vanish at the same impulse: compression ends. True if the collision ends with it

@@ -9,7 +9,7 @@ use super::{
     sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc, rough_ln},
     target::Watched,
 };
-use crate::scalar::{Real, constant, dot, fma, larger, smaller};
+use crate::scalar::{Arithmetic, Mask, Real, constant, dot, fma, larger, smaller};
 
 /// An event: v_n, I_n or the normal work since compression ended reaches a target.
 #[derive(Clone, Copy)]
@@ -19,10 +19,13 @@ pub(crate) enum Event<T> {
     Work(T),
 }
 
-impl<T: Real> Event<T> {
+impl<T: Arithmetic> Event<T> {
     /// The event that ends restitution under the law, once compression has ended.
     #[inline(always)]
-    pub fn end(restitution: &Restitution<T>) -> Self {
+    pub fn end(restitution: &Restitution<T>) -> Self
+    where
+        T: Real,
+    {
         match restitution.law().watched() {
             Watched::Velocity => Self::Velocity(restitution.target),
             Watched::Impulse => Self::Impulse(restitution.target),
@@ -81,17 +84,16 @@ impl<T: Real> Event<T> {
             Self::Work(_) => {
                 let v = point.state.velocity;
                 let square = dot(v, v, missing + missing, slope);
-                if square <= zero {
-                    return zero;
-                }
-                let after = square.sqrt();
-                let first = (missing + missing) / (v + after);
-                return first * (T::one() - bend * first * constant(1.0 / 6.0) / slope);
+                let first = || {
+                    let first = (missing + missing) / (v + square.sqrt());
+                    first * (T::one() - bend * first * constant(1.0 / 6.0) / slope)
+                };
+                return T::choose(square.at_most(zero), || zero, first);
             }
             Self::Velocity(_) => missing,
         };
         let square = dot(slope, slope, v + v, bend);
-        if square <= zero { zero } else { (v + v) / (slope + square.sqrt()) }
+        T::choose(square.at_most(zero), || zero, || (v + v) / (slope + square.sqrt()))
     }
 
     /// A first guess of the length in lambda from here to the event (theory, 8.3); negative if none is
@@ -109,37 +111,40 @@ impl<T: Real> Event<T> {
         let per = one / rates.impulse;
         let bend = rates.slope * (rates.turn - rates.shape) * per;
         let impulse = self.impulse(point, rates.slope, bend).primal();
-        if impulse <= zero {
-            return -one;
-        }
         let ratio = (impulse * g / slip).primal();
-        if ratio <= constant(-1.5) {
-            // Slip stops long before the event.
-            return -one;
-        }
-        let far = point.w > arc.outer + arc.outer;
-        let mean = if far {
-            // Beyond the zeros of q: the rate of slip tends to that of the stable direction.
-            let last = arc.last_rate();
-            let late = last / arc.q[2] - rate;
-            last / (one + larger(late, zero) * half)
-        } else {
-            let RateChanges { shape, .. } = arc.rate_changes(point, rates);
-            let pull = fma(rate, pole - rates.shape, rates.change + shape) * lag * per;
-            fma(pull * half, impulse, g)
-        };
-        let ratio = larger((impulse * mean / slip).primal(), constant(-0.97));
-        let part =
-            if ratio.abs() <= constant(1e-3) { fma(ratio, -half, one) } else { rough_ln_1p(ratio) / ratio };
-        let part = part * impulse / slip.primal();
-        let (w, first) = (point.w.primal(), lag.primal());
-        let mut length = first * part;
-        for _ in 0..if far { 1 } else { 2 } {
-            let z = smaller(length, constant(4.0)) * constant(0.125);
-            let z = (one + z) / (one - z);
-            let z = z * z;
-            length = (first + arc.q_over_e(w * z * z)) * half * part;
-        }
+        // None is expected, or slip stops long before it.
+        let none = impulse.at_most(zero).or(|| ratio.at_most(constant(-1.5)));
+        let [length] = T::decide(
+            none,
+            || [-one],
+            || {
+                let far = (arc.outer + arc.outer).below(point.w);
+                let late = || {
+                    // Beyond the zeros of q: the rate of slip tends to that of the stable direction.
+                    let last = arc.last_rate();
+                    let late = last / arc.q[2] - rate;
+                    [last / (one + larger(late, zero) * half)]
+                };
+                let [mean] = T::decide(far, late, || {
+                    let RateChanges { shape, .. } = arc.rate_changes(point, rates);
+                    let pull = fma(rate, pole - rates.shape, rates.change + shape) * lag * per;
+                    [fma(pull * half, impulse, g)]
+                });
+                let ratio = larger((impulse * mean / slip).primal(), constant(-0.97));
+                let small = ratio.abs().at_most(constant(1e-3));
+                let part = T::choose(small, || fma(ratio, -half, one), || rough_ln_1p(ratio) / ratio);
+                let part = part * impulse / slip.primal();
+                let (w, first) = (point.w.primal(), lag.primal());
+                let nearer = |length: T| {
+                    let z = smaller(length, constant(4.0)) * constant(0.125);
+                    let z = (one + z) / (one - z);
+                    let z = z * z;
+                    (first + arc.q_over_e(w * z * z)) * half * part
+                };
+                let length = nearer(first * part);
+                T::decide(far, || [length], || [nearer(length)])
+            },
+        );
         length
     }
 }
@@ -155,26 +160,46 @@ pub(super) struct Correction<T> {
     curvature: T,
 }
 
-impl<T: Real> Correction<T> {
+impl<T: Arithmetic> Correction<T> {
     #[inline(always)]
     pub fn new(event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> Self {
         let (one, half) = (T::one(), constant::<T>(0.5));
         let (slope, bend) = event.slope(&point.state, rates);
         let newton = -event.at(point) / slope;
         let bent = newton * bend;
-        let step = if bent.abs() <= half {
-            newton / fma(bent, half, one)
-        } else if bent > half {
-            square(newton, bent)
-        } else if bent > constant(-0.999) {
-            newton * rough_ln_1p(bent) / bent
-        } else {
-            newton
+        let far = || {
+            let falls = || {
+                T::choose(constant::<T>(-0.999).below(bent), || newton * rough_ln_1p(bent) / bent, || newton)
+            };
+            T::choose(half.below(bent), || square(newton, bent), falls)
         };
+        let [step] = T::decide(bent.abs().at_most(half), || [newton / fma(bent, half, one)], || [far()]);
         let bend = bend.primal().abs();
         let rate = larger((rates.weight + rates.shape).primal().abs(), bend);
         let size = step.primal().abs() * larger(rate, half);
         Self { step, slope, curvature: bend, size }
+    }
+
+    /// Whether short steps lead from the point to the event; `around` is the length of the stretch or of the trial, the
+    /// larger of them.
+    #[inline(always)]
+    pub fn is_near(
+        &self,
+        event: &Event<T>,
+        arc: &SlidingArc<T>,
+        point: &ArcPoint<T>,
+        rates: &Rates<T>,
+        around: T,
+    ) -> T::Mask {
+        let far = self.step.primal().abs();
+        let short = || far.at_most(constant::<T>(0.035) * around);
+        let beyond = || far.at_most(constant::<T>(0.065) * arc.beyond(point));
+        let works = || match event {
+            Event::Work(_) => (far * rates.growth.primal().abs()).at_most(constant(0.3)),
+            _ => T::Mask::all(),
+        };
+        let near = self.size.at_most(constant(0.25)).and(|| far.at_most(constant(0.125)));
+        near.and(|| short().or(beyond)).and(works)
     }
 
     /// Estimates of the errors of `second_order_step` (of third order in the length) and of
@@ -221,7 +246,7 @@ impl<T: Real> Correction<T> {
 /// The step to the zero of the parabola with the same value, slope and curvature: `newton` is Newton's step
 /// x, `bent` is x (ln y')'.
 #[inline(always)]
-fn square<T: Real>(newton: T, bent: T) -> T {
+fn square<T: Arithmetic>(newton: T, bent: T) -> T {
     let one = T::one();
     let under = larger(one + bent + bent, T::zero());
     (newton + newton) / (one + under.sqrt())
@@ -229,11 +254,9 @@ fn square<T: Real>(newton: T, bent: T) -> T {
 
 /// ln(1 + x) with a relative error of about one per cent between -0.999 and 1000: enough for a first guess.
 #[inline(always)]
-fn rough_ln_1p<T: Real>(x: T) -> T {
+fn rough_ln_1p<T: Arithmetic>(x: T) -> T {
     let y = T::one() + x;
-    if x < constant(-0.85) || x > constant(8.0) {
-        constant::<T>(4.0) * rough_ln(y.sqrt().sqrt())
-    } else {
-        rough_ln(y)
-    }
+    let far = x.below(constant(-0.85)).or(|| constant::<T>(8.0).below(x));
+    let [ln] = T::decide(far, || [constant::<T>(4.0) * rough_ln(y.sqrt().sqrt())], || [rough_ln(y)]);
+    ln
 }

@@ -14,10 +14,10 @@ use super::{
 use crate::{scalar::Real, scalar::constant, scalar::larger, scalar::smaller};
 
 /// The greatest number of trials for one event; two or three are usual.
-const TRIALS: u32 = 96;
+pub(super) const TRIALS: u32 = 96;
 
 /// The greatest number of short steps after the trials.
-const SHORT_STEPS: u32 = 6;
+pub(super) const SHORT_STEPS: u32 = 6;
 
 /// A stretch of the arc on which v_n is monotone, and what locating events on it needs.
 pub(super) struct EventLocation<'a, T: Real> {
@@ -33,6 +33,64 @@ pub(super) struct EventLocation<'a, T: Real> {
     pub panel: &'a mut Panel<T>,
     /// The greatest length in lambda of one quadrature.
     pub reach: T,
+}
+
+/// The lengths between which an event lies, and that of the next trial.
+#[derive(Clone, Copy)]
+pub(super) struct Bracket<T> {
+    pub x: T,
+    lo: T,
+    hi: T,
+    limit: T,
+    /// Whether no trial was beyond the event.
+    open: bool,
+}
+
+impl<T: Real> Bracket<T> {
+    /// Before the first trial on a stretch of the length `limit`.
+    #[inline(always)]
+    pub fn new(guess: T, limit: T) -> Self {
+        let x = if guess > T::zero() && guess < limit { guess } else { limit };
+        Self { x, lo: T::zero(), hi: limit, limit, open: true }
+    }
+
+    /// Takes note whether the event comes after the trial. True if it does not come on the stretch.
+    #[inline(always)]
+    pub fn passes(&mut self, after: bool) -> bool {
+        if after {
+            if self.x >= self.limit {
+                return true;
+            }
+            self.lo = self.x;
+        } else {
+            self.hi = self.x;
+            self.open = false;
+        }
+        false
+    }
+
+    /// Whether rounding leaves nothing between the ends.
+    #[inline(always)]
+    pub fn is_narrow(&self) -> bool {
+        self.hi - self.lo <= constant::<T>(4.0) * T::default_epsilon() * self.hi
+    }
+
+    /// Chooses the next trial, after that of this number; `next` is where the event is expected.
+    #[inline(always)]
+    pub fn move_on(&mut self, next: T, trial: u32) {
+        let Self { lo, hi, limit, open, .. } = *self;
+        // Where the second trial still lies before the event, the end of the stretch decides whether
+        // there is one. Every fourth trial halves the bracket, in case the steps converge
+        // slowly.
+        let slow = if open { trial == 1 } else { trial % 4 == 3 };
+        self.x = if next > lo && next < hi && !slow {
+            next
+        } else if open && (next >= hi || slow) {
+            limit
+        } else {
+            (lo + hi) * constant(0.5)
+        };
+    }
 }
 
 impl<T: Real> EventLocation<'_, T> {
@@ -177,36 +235,20 @@ impl<T: Real> EventLocation<'_, T> {
             *to = self.from;
             return Some(T::zero());
         }
-        let half = constant::<T>(0.5);
-        let guess = event.guess(self.arc, &self.from, self.rates).primal();
-        let (mut lo, mut hi) = (T::zero(), limit);
-        let mut open = true;
-        let mut x = if guess > lo && guess < limit { guess } else { limit };
-        let works = matches!(event, Event::Work(_));
+        let mut bracket = Bracket::new(event.guess(self.arc, &self.from, self.rates).primal(), limit);
         for trial in 0..TRIALS {
             if !self.panel.spend() {
                 return None;
             }
+            let x = bracket.x;
             self.arc.step::<HERE>(&self.from, x, self.fast, self.panel, to);
-            let y = event.at(to);
-            if y * sign < T::zero() {
-                if x >= limit {
-                    return None;
-                }
-                lo = x;
-            } else {
-                hi = x;
-                open = false;
+            if bracket.passes(event.at(to) * sign < T::zero()) {
+                return None;
             }
             let rates = self.arc.rates(to);
             let correction = Correction::new(event, to, &rates);
-            let far = correction.step.primal().abs();
-            let near = correction.size <= constant(0.25)
-                && far <= constant(0.125)
-                && (far <= constant::<T>(0.035) * larger(self.reach, x)
-                    || far <= constant::<T>(0.065) * self.arc.beyond(to))
-                && (!works || far * rates.growth.primal().abs() <= constant(0.3));
-            if near || hi - lo <= constant::<T>(4.0) * T::default_epsilon() * hi {
+            let near = correction.is_near(event, self.arc, to, &rates, larger(self.reach, x));
+            if near || bracket.is_narrow() {
                 // The event does not lie before the beginning.
                 if correction.step < -x {
                     *to = self.from;
@@ -214,19 +256,9 @@ impl<T: Real> EventLocation<'_, T> {
                 }
                 return Some(x + self.polish::<HERE>(event, rates, correction, to));
             }
-            let next = (x + correction.step).primal();
-            // Where the second trial still lies before the event, the end of the stretch decides whether
-            // there is one. Every fourth trial halves the bracket, in case the steps converge
-            // slowly.
-            let slow = if open { trial == 1 } else { trial % 4 == 3 };
-            x = if next > lo && next < hi && !slow {
-                next
-            } else if open && (next >= hi || slow) {
-                limit
-            } else {
-                (lo + hi) * half
-            };
+            bracket.move_on((x + correction.step).primal(), trial);
         }
+        let x = bracket.x;
         if HERE {
             self.whole_apart(x, to)
         } else {

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::{
     ImpactError, ReducedMatrix, Surface,
-    scalar::{Real, constant, dot, fma, larger},
+    scalar::{Arithmetic, Mask, Real, constant, dot, fma, larger},
 };
 
 /// The uncertainty of an entry of a reduced matrix, in rounding units times the largest diagonal entry.
@@ -53,7 +53,7 @@ fn checked_here<T: Real>(
     v: &Vector3<T>,
     surface: &Surface<T>,
 ) -> Result<Option<ReducedMatrix<T>>, ImpactError<T>> {
-    if plainly_right(m, surface) && v.x < T::zero() && (v.x + v.y + v.z).is_finite() {
+    if plainly_right(m, v, surface.mu, surface.e) {
         return Ok(None);
     }
     let matrix = check_closely(m, v, surface)?;
@@ -63,10 +63,10 @@ fn checked_here<T: Real>(
     Ok(Some(matrix))
 }
 
-/// Whether contact and surface are valid by a margin so large that rounding does not matter; `false` decides
+/// Whether contact, surface and velocity are valid by a margin so large that rounding does not matter; `false` decides
 /// nothing.
 #[inline(always)]
-fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
+pub(super) fn plainly_right<T: Arithmetic>(m: &ReducedMatrix<T>, v: &Vector3<T>, mu: T, e: T) -> T::Mask {
     let zero = T::zero();
     let (a, b, c) = (m.nn * m.tt, m.nn * m.ss, m.tt * m.ss);
     // Products below this may be denormal and comparisons with them meaningless.
@@ -74,18 +74,20 @@ fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
     let minor = c - m.ts * m.ts;
     let (t, s) = (dot(m.nt, m.ss, -m.ns, m.ts), dot(m.nt, m.ts, -m.tt, m.ns));
     let det = fma(m.nn, minor, dot(-m.nt, t, m.ns, s));
-    m.nn > zero
-        && a > least
-        && b > least
-        && c > least
-        && a >= m.nt * m.nt
-        && b >= m.ns * m.ns
-        && minor >= zero
-        && det >= zero
-        && surface.mu >= zero
-        && surface.e >= zero
-        && surface.e <= T::one()
-        && (det + surface.mu).is_finite()
+    zero.below(m.nn)
+        .and(|| least.below(a))
+        .and(|| least.below(b))
+        .and(|| least.below(c))
+        .and(|| (m.nt * m.nt).at_most(a))
+        .and(|| (m.ns * m.ns).at_most(b))
+        .and(|| zero.at_most(minor))
+        .and(|| zero.at_most(det))
+        .and(|| zero.at_most(mu))
+        .and(|| zero.at_most(e))
+        .and(|| e.at_most(T::one()))
+        .and(|| (det + mu).has_end())
+        .and(|| v.x.below(zero))
+        .and(|| (v.x + v.y + v.z).has_end())
 }
 
 /// An error that says what is wrong with contact, surface and numbers, if anything is; else the matrix

@@ -11,7 +11,7 @@
 
 use nalgebra::Vector2;
 
-use crate::scalar::{Real, constant, dot, fma, larger, length};
+use crate::scalar::{Arithmetic, Mask, constant, dot, either, fma, larger, length};
 
 /// The greatest number of Newton steps; a handful suffices unless two zeros are about to merge.
 const STEPS: u32 = 32;
@@ -26,7 +26,7 @@ const ROUGH: f64 = 1e-4;
 /// `turn` is h at d, not zero. `b` is (m_nt, m_ns), `nu` is mu times the deviator of T, ((m_tt - m_ss) / 2,
 /// m_ts). The vectors returned are right to half the digits, and their length is one to half the digits only.
 #[inline(always)]
-pub(super) fn neighbours<T: Real>(
+pub(super) fn neighbours<T: Arithmetic>(
     b: &Vector2<T>,
     nu: &Vector2<T>,
     d: &Vector2<T>,
@@ -36,19 +36,18 @@ pub(super) fn neighbours<T: Real>(
     let half = length(nu);
     let delta = half + half;
     // The principal axis of the larger principal value has half the angle of nu.
-    let axis = if half > zero {
-        let axis =
-            if nu.x >= zero { Vector2::new(half + nu.x, nu.y) } else { Vector2::new(nu.y, half - nu.x) };
+    let halved = || {
+        let right = || Vector2::new(half + nu.x, nu.y);
+        let axis = either(zero.at_most(nu.x), right, || Vector2::new(nu.y, half - nu.x));
         axis / length(&axis)
-    } else {
-        Vector2::new(T::one(), zero)
     };
+    let axis = either(zero.below(half), halved, || Vector2::new(T::one(), zero));
     let seen = |v: &Vector2<T>| over(v, &axis);
     let (pull, slip) = (seen(b), seen(d));
-    let sign = |x: T| if x < zero { -T::one() } else { T::one() };
+    let sign = |x: T| T::choose(x.below(zero), || -T::one(), || T::one());
     let (sx, sy) = (sign(pull.x), sign(pull.y));
     let slip = Vector2::new(slip.x * sx, slip.y * sy);
-    let forward = turn * sx * sy > zero;
+    let forward = zero.below(turn * sx * sy);
     // Where a component of b vanishes a zero lies on an axis; replacing it by a tiny number keeps the zero
     // inside its quadrant.
     let eps = T::default_epsilon();
@@ -59,27 +58,26 @@ pub(super) fn neighbours<T: Real>(
     let slope =
         fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
     // Whether the unstable zero and the stable one are those in the fourth quadrant.
-    let [unstable, stable] = if forward && crowded(p, q, delta) {
-        let behind = slip.y >= zero || (slip.x > zero && slope > zero);
-        [behind, !behind]
-    } else {
-        [!forward && slip.x >= zero && slip.y < zero; 2]
-    };
-    let unstable = if unstable {
+    let pair = forward.and(|| crowded(p, q, delta));
+    let behind = zero.at_most(slip.y).or(|| zero.below(slip.x).and(|| zero.below(slope)));
+    let backward = || forward.not().and(|| zero.at_most(slip.x)).and(|| slip.y.below(zero));
+    let (unstable, stable) = (pair.select(|| behind, backward), pair.select(|| behind.not(), backward));
+    let below = || {
         let (x, y) = paired(p, q, delta);
-        Vector2::new(x, -y)
-    } else {
+        [x, -y]
+    };
+    let left = || {
         let (y, x) = alone(q, p, delta);
-        Vector2::new(-x, -y)
+        [-x, -y]
     };
+    let unstable = Vector2::from(T::decide(unstable, below, left));
     // Of the zeros in the fourth quadrant the stable one comes first, anticlockwise.
-    let stable = if stable {
+    let below = || {
         let (y, x) = paired(q, p, delta);
-        Vector2::new(x, -y)
-    } else {
-        let (x, y) = alone(p, q, delta);
-        Vector2::new(x, y)
+        [x, -y]
     };
+    let right = || <[T; 2]>::from(alone(p, q, delta));
+    let stable = Vector2::from(T::decide(stable, below, right));
     [unstable, stable].map(|v| {
         let (x, y) = (v.x * sx, v.y * sy);
         times(&axis, &Vector2::new(x, y))
@@ -89,30 +87,36 @@ pub(super) fn neighbours<T: Real>(
 /// Whether the fourth quadrant holds zeros: whether b lies inside the astroid p^(2/3) + q^(2/3) =
 /// delta^(2/3).
 #[inline]
-fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
+fn crowded<T: Arithmetic>(p: T, q: T, delta: T) -> T::Mask {
     let inside = fma(delta, delta, -dot(p, p, q, q));
     let product = p * q * delta;
-    inside > T::zero() && inside * inside * inside > constant::<T>(27.0) * product * product
+    let far = || (constant::<T>(27.0) * product * product).below(inside * inside * inside);
+    T::zero().below(inside).and(far)
 }
 
 /// The direction (p / (eta + delta), q / eta) of length one (to half the digits) with eta > 0, by Newton's
 /// method on 1 / length = 1, which converges from below (theory, 3.2).
 #[inline(always)]
-fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
+fn alone<T: Arithmetic>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
     // The root is a convex function of delta, so its tangent at delta = 0 lies below it.
     let pp = p * p;
     let square = fma(q, q, pp);
     let mut eta = larger(q, square.sqrt() - delta * pp / square);
     let (mut x, mut y) = (one, one);
+    let mut going = T::Mask::all();
     for _ in 0..STEPS {
         let (a, b) = (one / (eta + delta), one / eta);
-        (x, y) = (p * a, q * b);
-        let (xx, yy) = (x * x, y * y);
+        let (px, qy) = (p * a, q * b);
+        let (xx, yy) = (px * px, qy * qy);
         let square = xx + yy;
         let step = (square.sqrt() - one) * square / dot(xx, a, yy, b);
-        if step <= constant::<T>(ROUGH) * eta {
-            return (fma(-x * a, step, x), fma(-y * b, step, y));
+        let ends = step.at_most(constant::<T>(ROUGH) * eta);
+        let better = || [fma(-px * a, step, px), fma(-qy * b, step, qy)];
+        [x, y] = T::iterated(going, || T::choose_all(ends, better, || [px, qy]), [x, y]);
+        going = going.and(|| ends.not());
+        if !going.any() {
+            break;
         }
         eta += step;
     }
@@ -122,21 +126,25 @@ fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
 /// The direction (p / eta, q / (delta - eta)) of length one (to half the digits) with the lesser such eta in
 /// (0, delta).
 #[inline(always)]
-fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
+fn paired<T: Arithmetic>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
     let mut eta = p;
     let (mut x, mut y) = (one, one);
+    let mut going = T::Mask::all();
     for _ in 0..STEPS {
         let (a, b) = (one / eta, one / (delta - eta));
-        (x, y) = (p * a, q * b);
-        let (xx, yy) = (x * x, y * y);
+        let (px, qy) = (p * a, q * b);
+        let (xx, yy) = (px * px, qy * qy);
         let slope = dot(xx, a, -yy, b);
-        if slope <= T::zero() {
-            break;
-        }
+        let lost = slope.at_most(T::zero());
         let step = (xx + yy - one) * constant(0.5) / slope;
-        if step <= constant::<T>(ROUGH) * eta {
-            return (fma(-x * a, step, x), fma(y * b, step, y));
+        let ends = step.at_most(constant::<T>(ROUGH) * eta);
+        let better = || [fma(-px * a, step, px), fma(qy * b, step, qy)];
+        let last = lost.not().and(|| ends);
+        [x, y] = T::iterated(going, || T::choose_all(last, better, || [px, qy]), [x, y]);
+        going = going.and(|| lost.or(|| ends).not());
+        if !going.any() {
+            break;
         }
         eta += step;
     }
@@ -145,18 +153,18 @@ fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
 
 /// a b, of complex numbers.
 #[inline(always)]
-pub(super) fn times<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
+pub(super) fn times<T: Arithmetic>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
     Vector2::new(dot(a.x, b.x, -a.y, b.y), dot(a.x, b.y, a.y, b.x))
 }
 
 /// a / b of complex numbers, for b of modulus one.
 #[inline(always)]
-pub(super) fn over<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
+pub(super) fn over<T: Arithmetic>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
     Vector2::new(dot(a.x, b.x, a.y, b.y), dot(a.y, b.x, -a.x, b.y))
 }
 
 /// A zero of h.
-pub(super) struct Zero<T: Real> {
+pub(super) struct Zero<T: Arithmetic> {
     pub direction: Vector2<T>,
     /// abs(h') at the zero.
     pub slope: T,
@@ -164,34 +172,39 @@ pub(super) struct Zero<T: Real> {
     pub pull: T,
 }
 
-impl<T: Real> Zero<T> {
+impl<T: Arithmetic> Zero<T> {
     /// The zero next to the direction `v` at which h' has the given sign. Steps solve the quadratic
     /// approximation of h, so that another zero close by is not taken for it.
     #[inline(always)]
     pub fn close(b: &Vector2<T>, nu: &Vector2<T>, mut v: Vector2<T>, sign: T) -> Self {
         let enough = if T::refined() { constant::<T>(8.0) * T::default_epsilon() } else { constant(3e-8) };
         let (mut slope, mut pull) = (T::zero(), T::zero());
+        let mut going = T::Mask::all();
         for left in (0..6).rev() {
             let (along, double) = (over(b, &v), over(&over(nu, &v), &v));
             let h = along.y - double.y;
-            slope = (double.x + double.x - along.x) * sign;
-            pull = along.x - double.x;
+            let (steep, pulled) = ((double.x + double.x - along.x) * sign, along.x - double.x);
             let bend = fma(constant::<T>(4.0), double.y, -along.y);
-            let turn = to_zero(h * sign, slope, bend * sign);
+            let turn = to_zero(h * sign, steep, bend * sign);
             let size = turn.abs();
             // A large step is NaN or leads to another zero and is not taken; nor is the last one, since the
             // steps are rounding where zeros merge.
-            if size <= constant(0.1) && left > 0 {
+            let taken = size.at_most(constant(if left > 0 { 0.1 } else { -1.0 }));
+            let again = taken.and(|| enough.below(size));
+            let turned = || {
                 let along = fma(turn * turn, constant(-0.5), T::one());
-                v = Vector2::new(dot(v.x, along, -v.y, turn), dot(v.y, along, v.x, turn));
-                if size > enough {
-                    v /= length(&v);
-                    continue;
-                }
-                slope += bend * turn * sign;
-                pull += (h - double.y) * turn;
+                let v = Vector2::new(dot(v.x, along, -v.y, turn), dot(v.y, along, v.x, turn));
+                let v = either(again, || v / length(&v), || v);
+                let last = || [steep + bend * turn * sign, pulled + (h - double.y) * turn];
+                let [slope, pull] = T::choose_all(again, || [steep, pulled], last);
+                [v.x, v.y, slope, pull]
+            };
+            let step = || T::choose_all(taken, turned, || [v.x, v.y, steep, pulled]);
+            [v.x, v.y, slope, pull] = T::iterated(going, step, [v.x, v.y, slope, pull]);
+            going = going.and(|| again);
+            if !going.any() {
+                break;
             }
-            break;
         }
         Self { direction: v, slope, pull }
     }
@@ -200,14 +213,17 @@ impl<T: Real> Zero<T> {
 /// The unit vector at half the angle of `v`, counted from the axis in the sense of `side` (1 anticlockwise,
 /// -1 clockwise); this angle is at most 240 degrees (theory, 3.3).
 #[inline(always)]
-fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
+fn halved<T: Arithmetic>(v: &Vector2<T>, side: T) -> Vector2<T> {
     let (one, half) = (T::one(), constant::<T>(0.5));
-    if v.x < T::zero() {
+    let obtuse = || {
         let sin = ((one - v.x) * half).sqrt() * side;
-        return Vector2::new(v.y * half / sin, sin);
-    }
-    let cos = ((one + v.x) * half).sqrt();
-    Vector2::new(cos, v.y * half / cos)
+        Vector2::new(v.y * half / sin, sin)
+    };
+    let acute = || {
+        let cos = ((one + v.x) * half).sqrt();
+        Vector2::new(cos, v.y * half / cos)
+    };
+    either(v.x.below(T::zero()), obtuse, acute)
 }
 
 /// h as a function of x = tan(angle / 2), the angle being counted from the direction in which the arc begins.
@@ -216,20 +232,26 @@ pub(super) struct Near<T> {
     pub h: [T; 5],
 }
 
-impl<T: Real> Near<T> {
+impl<T: Arithmetic> Near<T> {
     /// The zero next to the approximate zero `rough`, and the unit vector at half the angle to it. `b` and
     /// `nu` as for [`neighbours`].
     #[inline(always)]
     pub fn exact(&self, [b, nu, rough]: [&Vector2<T>; 3], side: T, sign: T) -> (Vector2<T>, Zero<T>) {
         let zero = Zero::close(b, nu, rough / length(rough), sign);
         let direction = &zero.direction;
-        if direction.x > T::zero() && direction.y.abs() <= constant(0.125) {
+        let near = T::zero().below(direction.x).and(|| direction.y.abs().at_most(constant(0.125)));
+        let beside = || {
             let (half, exact) = self.beside(direction, side, sign);
             let (along, double) = (over(b, &exact), over(&over(nu, &exact), &exact));
             let (slope, pull) = ((double.x + double.x - along.x) * sign, along.x - double.x);
-            return (half, Zero { direction: exact, slope, pull });
-        }
-        (halved(direction, side), zero)
+            [half.x, half.y, exact.x, exact.y, slope, pull]
+        };
+        let away = || {
+            let half = halved(direction, side);
+            [half.x, half.y, direction.x, direction.y, zero.slope, zero.pull]
+        };
+        let [x, y, along, across, slope, pull] = T::decide(near, beside, away);
+        (Vector2::new(x, y), Zero { direction: Vector2::new(along, across), slope, pull })
     }
 
     /// The unit vectors at half the angle and at the angle of a zero near the axis. The angle has the same
@@ -255,23 +277,21 @@ impl<T: Real> Near<T> {
         let slope = fma(fma(fma(constant::<T>(4.0) * h4, x, three * h3), x, h2 + h2), x, h1);
         let bend = fma(fma(constant::<T>(12.0) * h4, x, constant::<T>(6.0) * h3), x, h2 + h2);
         let step = to_zero(value * sign, slope * sign, bend * sign);
-        if step.abs() <= constant(0.01) { x + step } else { x }
+        T::choose(step.abs().at_most(constant(0.01)), || x + step, || x)
     }
 }
 
 /// The zero x of `value` + `slope` x + `bend` x^2 / 2 at which this rises, or its extremum if it has no zero.
 /// `slope` must be positive up to rounding.
 #[inline(always)]
-fn to_zero<T: Real>(value: T, slope: T, bend: T) -> T {
+fn to_zero<T: Arithmetic>(value: T, slope: T, bend: T) -> T {
     let two = constant::<T>(2.0);
     let square = dot(slope, slope, -two * value, bend);
-    if square.primal() <= T::zero() {
-        -slope / bend
-    } else if slope > T::zero() {
-        -two * value / (slope + square.sqrt())
-    } else {
-        (square.sqrt() - slope) / bend
-    }
+    let rising = || -two * value / (slope + square.sqrt());
+    let falling = || (square.sqrt() - slope) / bend;
+    let steep = || T::decide(T::zero().below(slope), || [rising()], || [falling()]);
+    let [x] = T::decide(square.primal().at_most(T::zero()), || [-slope / bend], steep);
+    x
 }
 
 #[cfg(test)]

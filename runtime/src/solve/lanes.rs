@@ -3,46 +3,46 @@
 //!
 //! Theory: docs/theory.md, section 5.
 
-use crate::scalar::{Real, constant, fma};
+use crate::scalar::{Arithmetic, constant, fma};
 
 /// Four numbers.
 pub(super) type Lanes<T> = [T; 4];
 
 /// The same number four times.
 #[inline(always)]
-fn all<T: Real>(x: T) -> Lanes<T> {
+fn all<T: Arithmetic>(x: T) -> Lanes<T> {
     [x; 4]
 }
 
 #[inline(always)]
-fn zip<T: Real>(a: Lanes<T>, b: Lanes<T>, f: impl Fn(T, T) -> T) -> Lanes<T> {
+fn zip<T: Arithmetic>(a: Lanes<T>, b: Lanes<T>, f: impl Fn(T, T) -> T) -> Lanes<T> {
     let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (a, b);
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)]
 }
 
 #[inline(always)]
-fn add<T: Real>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
+fn add<T: Arithmetic>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
     zip(a, b, |a, b| a + b)
 }
 
 #[inline(always)]
-fn sub<T: Real>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
+fn sub<T: Arithmetic>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
     zip(a, b, |a, b| a - b)
 }
 
 #[inline(always)]
-fn mul<T: Real>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
+fn mul<T: Arithmetic>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
     zip(a, b, |a, b| a * b)
 }
 
 #[inline(always)]
-fn div<T: Real>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
+fn div<T: Arithmetic>(a: Lanes<T>, b: Lanes<T>) -> Lanes<T> {
     zip(a, b, |a, b| a / b)
 }
 
 /// a b + c.
 #[inline(always)]
-fn mul_add<T: Real>(a: Lanes<T>, b: Lanes<T>, c: Lanes<T>) -> Lanes<T> {
+fn mul_add<T: Arithmetic>(a: Lanes<T>, b: Lanes<T>, c: Lanes<T>) -> Lanes<T> {
     let ([a0, a1, a2, a3], [b0, b1, b2, b3], [c0, c1, c2, c3]) = (a, b, c);
     [fma(a0, b0, c0), fma(a1, b1, c1), fma(a2, b2, c2), fma(a3, b3, c3)]
 }
@@ -64,7 +64,7 @@ const COTH: [f64; 7] = [
 /// E = e^y - 1 = 2 y / (y coth(y / 2) - y) for y = x / 16, and then four times E <- (1 + E)^2 - 1 = E (E +
 /// 2), which loses no digits.
 #[inline(always)]
-pub(super) fn exp<T: Real>(x: Lanes<T>) -> Lanes<T> {
+pub(super) fn exp<T: Arithmetic>(x: Lanes<T>) -> Lanes<T> {
     let two = all(constant(2.0));
     let y = mul(x, all(constant(0.0625)));
     let z = mul(y, y);

@@ -11,7 +11,7 @@ use super::{
     lanes::{Lanes, exp},
     sliding_arc::{ArcPoint, Rates, SlidingArc},
 };
-use crate::scalar::{Real, constant, fma};
+use crate::scalar::{Arithmetic, constant, fma};
 
 /// The nodes in (0, 1]; the first of the five is zero.
 const NODES: Lanes<f64> = [0.17267316464601143, 0.5, 0.8273268353539886, 1.0];
@@ -43,7 +43,7 @@ struct Nodes<T> {
     sums: [Lanes<T>; 3],
 }
 
-impl<T: Real> SlidingArc<T> {
+impl<T: Arithmetic> SlidingArc<T> {
     /// Moves the point, which has these rates, by `length` in lambda, with its work (backwards if `length` is
     /// negative).
     #[inline(never)]
@@ -157,7 +157,7 @@ impl<T: Real> SlidingArc<T> {
 /// The integrals from the beginning to each node of a function with these values at the beginning and at the
 /// nodes.
 #[inline(always)]
-fn collocate<T: Real>(begin: T, values: &Lanes<T>, out: &mut Lanes<T>) {
+fn collocate<T: Arithmetic>(begin: T, values: &Lanes<T>, out: &mut Lanes<T>) {
     let [first, rows @ ..] = &INTEGRALS;
     *out = first.map(|part| begin * constant(part));
     for (value, row) in values.iter().zip(rows) {
@@ -169,7 +169,7 @@ fn collocate<T: Real>(begin: T, values: &Lanes<T>, out: &mut Lanes<T>) {
 
 /// The sum of the four lanes.
 #[inline(always)]
-fn sum<T: Real>([a, b, c, d]: Lanes<T>) -> T {
+fn sum<T: Arithmetic>([a, b, c, d]: Lanes<T>) -> T {
     (a + c) + (b + d)
 }
 

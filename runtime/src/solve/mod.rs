@@ -26,9 +26,13 @@ mod straight;
 mod target;
 mod taylor;
 mod terminal;
+#[cfg(feature = "lanes")]
+mod together;
 mod verification;
 mod without_collision;
 
+#[cfg(feature = "lanes")]
+pub(crate) use self::together::solve_together;
 pub use self::{collision::solve, without_collision::impact_without_collision};
 pub(crate) use self::{
     collision::{collide, slips, solve_real},

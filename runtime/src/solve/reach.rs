@@ -4,9 +4,9 @@
 //! Theory: docs/theory.md, sections 5.3 and 8.1.
 
 use super::sliding_arc::{ArcPoint, Rates, SlidingArc, wide_ln};
-use crate::scalar::{Real, constant, dot, fma, larger, smaller};
+use crate::scalar::{Arithmetic, Mask, Real, constant, dot, fma, larger, smaller};
 
-impl<T: Real> SlidingArc<T> {
+impl<T: Arithmetic> SlidingArc<T> {
     /// The distance in lambda by which a point lies beyond the mean modulus of the zeros of q, or a lower
     /// bound of it; negative before them.
     #[inline(always)]
@@ -30,53 +30,66 @@ impl<T: Real> SlidingArc<T> {
             fma(constant::<T>(2.0 * SUM), away, constant::<T>(4.0) * d) * constant(1.0 / (SUM * SUM - 4.0))
         };
         let before = self.beyond(point);
-        let mut poles = to(before - self.spread);
-        if self.spread > T::zero() {
-            poles = smaller(poles, to(before + self.spread));
-        }
+        let poles = to(before - self.spread);
+        let poles =
+            T::choose(T::zero().below(self.spread), || smaller(poles, to(before + self.spread)), || poles);
         let poles = smaller(poles, constant(0.5 * MOST));
         let one = T::one();
-        let mut rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).primal();
+        let rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).primal();
         let slip = point.sigma * rates.e;
-        let works = slip > constant(0.06) || (slip > constant(1e-3) && poles * rate > constant(12.0));
-        if works {
-            // The integrand of the work has the size of slip times that of the impulse.
-            rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().primal());
-        }
+        let steep = || constant::<T>(12.0).below(poles * rate);
+        let works = constant::<T>(0.06).below(slip).or(|| constant::<T>(1e-3).below(slip).and(steep));
+        // The integrand of the work has the size of slip times that of the impulse.
+        let of_work =
+            || larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().primal());
+        let rate = T::choose(works, of_work, || rate);
         // A growth that changes means that sigma has a large power of the distance from the zeros of q; the
         // stretch must keep farther from them.
         let bent = (rates.change.abs().primal() * constant(0.06)).sqrt();
         let both = limited(poles, bent, rate);
         let both = both + both;
-        if self.central[2].abs().primal() <= (rate + rate) * self.q[2].primal() {
-            return both.primal();
-        }
-        let both = both * constant(0.5);
+        let even = self.central[2].abs().primal().at_most((rate + rate) * self.q[2].primal());
+        let grows = || [self.reach_of_growth(point, rates, [poles, bent, rate, both * constant(0.5)], works)];
+        let [reach] = T::decide(even, || [both], grows);
+        reach.primal()
+    }
+
+    /// [`Self::reach`] where the growth may rise on the way.
+    #[inline(always)]
+    fn reach_of_growth(
+        &self,
+        point: &ArcPoint<T>,
+        rates: &Rates<T>,
+        [poles, bent, rate, both]: [T; 4],
+        works: T::Mask,
+    ) -> T {
+        let one = T::one();
         // An estimate of the growth at the far end, where it may be larger; what it has risen by is added
         // once more, since it rises on.
         let near = (rates.growth + one).abs().primal();
         let steepest = self.growth_at(point.w, both, near, works);
-        if steepest <= rate + rate {
-            return (both + both).primal();
-        }
-        // A length that the growth at its own far end allows, by bisection.
-        let (mut least, mut most) = (smaller(both, limited(poles, bent, steepest)), both);
-        for _ in 0..4 {
-            let middle = (least + most) * constant(0.5);
-            let far = self.growth_at(point.w, middle, near, works);
-            let allowed = limited(poles, bent, larger(far, rate));
-            if allowed >= middle {
-                least = middle;
-            } else {
-                (least, most) = (larger(least, allowed), middle);
+        let bisected = || {
+            // A length that the growth at its own far end allows, by bisection.
+            let (mut least, mut most) = (smaller(both, limited(poles, bent, steepest)), both);
+            for _ in 0..4 {
+                let middle = (least + most) * constant(0.5);
+                let far = self.growth_at(point.w, middle, near, works);
+                let allowed = limited(poles, bent, larger(far, rate));
+                [least, most] = T::choose_all(
+                    middle.at_most(allowed),
+                    || [middle, most],
+                    || [larger(least, allowed), middle],
+                );
             }
-        }
-        (least + least).primal()
+            [least]
+        };
+        let [length] = T::decide(steepest.at_most(rate + rate), || [both], bisected);
+        length + length
     }
 
     /// The estimate of [`Self::reach`] for the growth at twice the length `both` from `w`.
     #[inline(always)]
-    fn growth_at(&self, w: T, both: T, near: T, works: bool) -> T {
+    fn growth_at(&self, w: T, both: T, near: T, works: T::Mask) -> T {
         let one = T::one();
         let part = both * constant(0.125);
         let ratio = (one + part) / (one - part);
@@ -86,9 +99,11 @@ impl<T: Real> SlidingArc<T> {
         let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
         let far = (poly(self.central) / poly(self.q)).abs().primal();
         let far = far + larger(far - near, T::zero());
-        if works { far + far } else { far }
+        T::choose(works, || far + far, || far)
     }
+}
 
+impl<T: Real> SlidingArc<T> {
     /// Whether v_n has a turning point ahead.
     #[inline(always)]
     pub fn turns_ahead(&self, point: &ArcPoint<T>) -> bool {
@@ -138,7 +153,7 @@ impl<T: Real> SlidingArc<T> {
 
 /// The length in lambda that poles at the distance `poles`, a growth of this rate and its change `bent` allow.
 #[inline(always)]
-fn limited<T: Real>(poles: T, bent: T, rate: T) -> T {
+fn limited<T: Arithmetic>(poles: T, bent: T, rate: T) -> T {
     let one = T::one();
     // A fit to the length at which the error with growth is 1e-15 (theory, 18.4).
     let c = poles * rate;

@@ -10,14 +10,14 @@ use super::{
     grazing::Grazing,
     target::{Compression, Watched},
 };
-use crate::{Law, scalar::Real, scalar::constant, scalar::larger};
+use crate::{Law, scalar::Arithmetic, scalar::Real, scalar::constant, scalar::larger};
 
 /// Slip over |v_n1| (times mu if mu > 1) above which the balance of energy would lose digits of the work.
 const FAST: f64 = 32.0;
 
 /// Impulses, normal velocity and normal work at one point of a collision.
 #[derive(Clone, Copy)]
-pub(crate) struct State<T: Real> {
+pub(crate) struct State<T: Arithmetic> {
     /// Normal impulse I_n.
     pub normal: T,
     /// Tangential impulse (I_t, I_s).
@@ -28,7 +28,7 @@ pub(crate) struct State<T: Real> {
     pub work: T,
 }
 
-impl<T: Real> State<T> {
+impl<T: Arithmetic> State<T> {
     /// The state before any impulse, with this v_n.
     #[inline]
     pub fn before(velocity: T) -> Self {

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Sensitivity,
-    scalar::{Real, constant, length},
+    scalar::{Arithmetic, Mask, Real, constant, length},
 };
 
 /// The bound below which a flag is set, of |mu / mu_c - 1|, of v_n over the speed of approach, and of an
@@ -39,12 +39,8 @@ impl Sensitivity {
 
     #[inline(always)]
     fn of_start_here<T: Real>(contact: &Contact<T>, tangential: &Vector2<T>, slip: T) -> Self {
-        let no_slip = slip * slip <= T::default_epsilon();
-        Self {
-            unstable_direction: !no_slip && unstable(contact, &(tangential / slip)),
-            no_slip,
-            ..Self::default()
-        }
+        let (no_slip, unstable_direction) = starts(contact, &(tangential / slip), slip);
+        Self { unstable_direction, no_slip, ..Self::default() }
     }
 
     /// Sets the flag of mu near mu_c, after slip has stopped.
@@ -103,14 +99,26 @@ impl Sensitivity {
     }
 }
 
+/// Whether there is no slip at the start, or it has an unstable direction.
+#[inline(always)]
+pub(super) fn starts<T: Arithmetic>(
+    contact: &Contact<T>,
+    direction: &Vector2<T>,
+    slip: T,
+) -> (T::Mask, T::Mask) {
+    let no_slip = (slip * slip).at_most(T::default_epsilon());
+    (no_slip, no_slip.not().and(|| unstable(contact, direction)))
+}
+
 /// Whether a direction lies near an unstable zero of h.
 #[inline(always)]
-fn unstable<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
+fn unstable<T: Arithmetic>(c: &Contact<T>, d: &Vector2<T>) -> T::Mask {
     let [_, g, h] = c.rates(d);
     // h' + g, the rate at which the velocity across the slip changes. Where it is zero nothing moves the
     // contact across the slip (planar systems), and a deviation stays as small as it is.
     let across = c.convergence(d);
     let slope = across - g;
     let noise = constant::<T>(64.0) * T::default_epsilon() * c.slip_size();
-    slope > noise && h.abs() <= constant::<T>(NEAR) * slope && -across > noise
+    let near = || h.abs().at_most(constant::<T>(NEAR) * slope);
+    noise.below(slope).and(near).and(|| noise.below(-across))
 }

@@ -18,11 +18,11 @@ use crate::scalar::{Real, constant};
 
 /// The greatest number of stretches. The length of a stretch in lambda is proportional to its distance from
 /// the zeros of q, so that few are needed.
-const STRETCHES: u32 = 512;
+pub(super) const STRETCHES: u32 = 512;
 
 /// If |h| at the start is below this many times its rounding error, slip may turn by a small angle only, and
 /// `perturbed` is tried first.
-const NEARLY: f64 = 131_072.0;
+pub(super) const NEARLY: f64 = 131_072.0;
 
 /// Where nothing moves the contact across the slip by more than so many roundings of the largest diagonal
 /// entry, slip keeps its direction: a planar contact in axes that are turned.

@@ -20,13 +20,14 @@ use super::{
     invariant_directions::{Near, Zero, neighbours, over, times},
     restitution::State,
 };
-use crate::scalar::{Real, constant, dot, fma, larger};
+use crate::scalar::{Arithmetic, Mask, constant, dot, fma, larger};
 
 /// The integrals of sigma e / q times 1, w and w^2 over lambda, along a stretch of the arc.
 pub(super) type Integrals<T> = [T; 3];
 
 /// The coefficients of an arc.
-pub(super) struct SlidingArc<T: Real> {
+#[derive(Clone, Copy)]
+pub(super) struct SlidingArc<T: Arithmetic> {
     pub mu: T,
     /// a^2, 2 a b and b^2: slip over sigma is this quadratic in w.
     pub slip: [Vector2<T>; 3],
@@ -55,18 +56,37 @@ pub(super) struct SlidingArc<T: Real> {
     /// The inverse of the geometric mean of the moduli of the zeros of q.
     pub scale: T,
     /// Whether f may change sign.
-    pub may_turn: bool,
+    pub may_turn: T::Mask,
 }
 
 /// A point of the arc.
 #[derive(Clone, Copy)]
-pub(super) struct ArcPoint<T: Real> {
+pub(super) struct ArcPoint<T: Arithmetic> {
     pub state: State<T>,
     /// Normal work since the latest compression ended, kept apart from the total because it may be much
     /// smaller.
     pub since: T,
     pub w: T,
     pub sigma: T,
+}
+
+impl<T: Arithmetic> ArcPoint<T> {
+    /// This point, and where `holds` the other one.
+    #[inline(always)]
+    pub fn or(self, holds: T::Mask, other: &Self) -> Self {
+        Self::of(T::choose_all(holds, || other.numbers(), || self.numbers()))
+    }
+
+    #[inline(always)]
+    pub fn numbers(&self) -> [T; 8] {
+        let State { normal, tangential, velocity, work } = self.state;
+        [normal, tangential.x, tangential.y, velocity, work, self.since, self.w, self.sigma]
+    }
+
+    #[inline(always)]
+    pub fn of([normal, t, s, velocity, work, since, w, sigma]: [T; 8]) -> Self {
+        Self { state: State { normal, tangential: Vector2::new(t, s), velocity, work }, since, w, sigma }
+    }
 }
 
 /// Derivatives with respect to lambda, and e, 1 / q and f, at a point of the arc.
@@ -96,7 +116,7 @@ pub(super) struct RateChanges<T> {
     pub turn: T,
 }
 
-impl<T: Real> SlidingArc<T> {
+impl<T: Arithmetic> SlidingArc<T> {
     /// The arc through the direction `d`, at which h is not zero, and the parameter w of `d`.
     #[inline(always)]
     pub fn through(c: &Contact<T>, d: &Vector2<T>) -> (Self, T) {
@@ -116,7 +136,7 @@ impl<T: Real> SlidingArc<T> {
         };
         let [u, s] = rough;
         // Unit vectors at half the angles to the zeros: `a` to the one behind, `z` to the one ahead.
-        let forward = if h > zero { one } else { -one };
+        let forward = T::choose(zero.below(h), || one, || -one);
         let (a, Zero { direction: u, slope: q0, pull: g_u }) = near.exact([&b, &nu, &u], -forward, one);
         let (z, Zero { direction: s, slope: q2, pull: g_s }) = near.exact([&b, &nu, &s], forward, -one);
         let (q0, q2, g_u, g_s) = (larger(q0, noise), larger(q2, noise), g_u - mean, g_s - mean);
@@ -130,7 +150,7 @@ impl<T: Real> SlidingArc<T> {
         let mean_root = (q0 * q2).sqrt().primal();
         let lean = -(q1 * half).primal() / mean_root;
         let modulus = (q0 / q2).sqrt().primal();
-        let factor = if lean < -one { fma(lean, lean, -one).sqrt() - lean } else { one };
+        let factor = T::choose(lean.below(-one), || fma(lean, lean, -one).sqrt() - lean, || one);
         let f = [c.nn - over(&mu_b, &u).x, two * fma(c.nn, cos, -cross), c.nn - over(&mu_b, &s).x];
         let k = [g_u, fma(cos, g_u + g_s, -q1), fma(-two, q2, g_s)];
         let slip = [times(&u, d), times(&product, d) * two, times(&s, d)];
@@ -147,7 +167,7 @@ impl<T: Real> SlidingArc<T> {
             bend: (sin + sin).abs(),
             outer: (modulus * factor).primal(),
             angle: angle(lean).primal(),
-            spread: if factor > one { rough_ln(factor).primal() } else { zero },
+            spread: T::choose(one.below(factor), || rough_ln(factor).primal(), || zero),
             scale: (one / modulus).primal(),
             may_turn: may_turn(&f),
         };
@@ -162,17 +182,17 @@ impl<T: Real> SlidingArc<T> {
 
     /// Whether slip falls.
     #[inline(always)]
-    pub fn slows(&self, point: &ArcPoint<T>) -> bool {
+    pub fn slows(&self, point: &ArcPoint<T>) -> T::Mask {
         let Rates { growth, shape, .. } = self.rates(point);
-        growth + shape < T::zero()
+        (growth + shape).below(T::zero())
     }
 
     /// Whether abs(h) is at most `than`.
     #[inline(always)]
-    pub fn turns_slower(&self, point: &ArcPoint<T>, than: T) -> bool {
+    pub fn turns_slower(&self, point: &ArcPoint<T>, than: T) -> T::Mask {
         let ([q0, q1, q2], w, e) = (self.q, point.w, self.e(point.w));
         let inverse = T::one() / fma(fma(q2, w, q1), w, q0);
-        self.bend * w <= than * inverse * e * e
+        (self.bend * w).at_most(than * inverse * e * e)
     }
 
     /// q / e, without derivatives.
@@ -255,17 +275,20 @@ impl<T: Real> SlidingArc<T> {
 
 /// Whether a quadratic has, or up to rounding may have, zeros at positive w.
 #[inline(always)]
-fn may_turn<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
+fn may_turn<T: Arithmetic>([f0, f1, f2]: &[T; 3]) -> T::Mask {
     let zero = T::zero();
-    let apart = (*f0 <= zero) != (*f2 <= zero);
-    let up = *f0 > zero && *f2 > zero;
-    let between = if up { *f1 < zero } else { *f1 > zero };
-    apart || *f0 == zero || *f2 == zero || (between && *f1 * *f1 >= constant::<T>(3.9) * *f0 * *f2)
+    let (falls, rises) = (f0.at_most(zero), f2.at_most(zero));
+    let apart = falls.select(|| rises.not(), || rises);
+    let none = |f: T| f.at_most(zero).and(|| zero.at_most(f));
+    let up = zero.below(*f0).and(|| zero.below(*f2));
+    let between = up.select(|| f1.below(zero), || zero.below(*f1));
+    let large = || (constant::<T>(3.9) * *f0 * *f2).at_most(*f1 * *f1);
+    apart.or(|| none(*f0)).or(|| none(*f2)).or(|| between.and(large))
 }
 
 /// ln x with a relative error of about one per cent between 1/8 and 8; beyond, its size is too small.
 #[inline(always)]
-pub(super) fn rough_ln<T: Real>(x: T) -> T {
+pub(super) fn rough_ln<T: Arithmetic>(x: T) -> T {
     // 2 atanh((x - 1) / (x + 1))
     let u = (x - T::one()) / (x + T::one());
     let z = u * u;
@@ -275,20 +298,86 @@ pub(super) fn rough_ln<T: Real>(x: T) -> T {
 /// ln x with a relative error of about one per cent between 1/4000 and 4000, and of a size between 8 and 14.7
 /// beyond.
 #[inline(always)]
-pub(super) fn wide_ln<T: Real>(x: T) -> T {
-    if x < constant(0.125) || x > constant(8.0) {
-        constant::<T>(4.0) * rough_ln(x.sqrt().sqrt())
-    } else {
-        rough_ln(x)
-    }
+pub(super) fn wide_ln<T: Arithmetic>(x: T) -> T {
+    let beyond = x.below(constant(0.125)).or(|| constant::<T>(8.0).below(x));
+    let [ln] = T::decide(beyond, || [constant::<T>(4.0) * rough_ln(x.sqrt().sqrt())], || [rough_ln(x)]);
+    ln
 }
 
 /// The angle with this cosine, with an error of about one per cent; pi for cosines below -1.
 #[inline]
-fn angle<T: Real>(cos: T) -> T {
+fn angle<T: Arithmetic>(cos: T) -> T {
     let one = T::one();
     let x = cos.abs();
-    let x = if x < one { x } else { one };
+    let x = T::choose(x.below(one), || x, || one);
     let acute = (one - x).sqrt() * fma(constant::<T>(-0.1565), x, constant(core::f64::consts::FRAC_PI_2));
-    if cos >= T::zero() { acute } else { constant::<T>(core::f64::consts::PI) - acute }
+    T::choose(T::zero().at_most(cos), || acute, || constant::<T>(core::f64::consts::PI) - acute)
 }
+
+#[cfg(feature = "lanes")]
+impl<T: Arithmetic> SlidingArc<T> {
+    /// The numbers of which the others follow, those of quadratures first; without `may_turn`.
+    #[inline(always)]
+    pub fn numbers(&self) -> ArcNumbers<T> {
+        let ([a, ab, b], [q0, q1, q2], [k0, k1, k2], [f0, f1, f2]) = (self.slip, self.q, self.k, self.f);
+        let Self { mu, middle, size, bend, outer, angle, spread, scale, .. } = *self;
+        let fill = scale;
+        [
+            mu, middle, a.x, a.y, ab.x, ab.y, b.x, b.y, q0, q1, q2, k0, k1, k2, f0, f1, f2, scale, size,
+            bend, outer, angle, spread, fill,
+        ]
+    }
+
+    /// The arc of these numbers.
+    #[inline(always)]
+    pub fn of(numbers: &ArcNumbers<T>, may_turn: T::Mask) -> Self {
+        let [
+            mu,
+            middle,
+            ax,
+            ay,
+            abx,
+            aby,
+            bx,
+            by,
+            q0,
+            q1,
+            q2,
+            k0,
+            k1,
+            k2,
+            f0,
+            f1,
+            f2,
+            scale,
+            size,
+            bend,
+            outer,
+            angle,
+            spread,
+            ..,
+        ] = *numbers;
+        let slip = [Vector2::new(ax, ay), Vector2::new(abx, aby), Vector2::new(bx, by)];
+        Self {
+            mu,
+            slip,
+            rub: slip.map(|x| x * -mu),
+            middle,
+            q: [q0, q1, q2],
+            k: [k0, k1, k2],
+            central: [k0 + q0, k1 + q1, k2 + q2],
+            f: [f0, f1, f2],
+            size,
+            bend,
+            outer,
+            angle,
+            spread,
+            scale,
+            may_turn,
+        }
+    }
+}
+
+/// The numbers of an arc, some of them to fill the last four.
+#[cfg(feature = "lanes")]
+pub(super) type ArcNumbers<T> = [T; 24];

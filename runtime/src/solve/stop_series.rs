@@ -13,7 +13,7 @@ use super::{
     restitution::State,
     sliding_arc::{ArcPoint, SlidingArc},
 };
-use crate::scalar::{Real, constant, dot, fma, larger};
+use crate::scalar::{Arithmetic, Mask, constant, dot, fma, larger};
 
 /// One coefficient of each series, for the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and for
 /// the work of friction.
@@ -32,14 +32,17 @@ struct Taps<T> {
     slope: [Row<T>; 3],
 }
 
-impl<T: Real> SlidingArc<T> {
+impl<T: Arithmetic> SlidingArc<T> {
     /// Whether 64 terms of the series suffice from here, where slip is `share` of the slip at the start.
     #[inline(always)]
-    pub fn settles(&self, point: &ArcPoint<T>, share: T) -> bool {
+    pub fn settles(&self, point: &ArcPoint<T>, share: T) -> T::Mask {
         let ratio = point.w / self.outer;
-        if ratio <= constant(1.3) {
-            return false;
-        }
+        ratio.at_most(constant(1.3)).not().and(|| self.settles_beyond(point, ratio, share))
+    }
+
+    /// [`Self::settles`] where w is this often the modulus of the zeros of q.
+    #[inline(always)]
+    fn settles_beyond(&self, point: &ArcPoint<T>, ratio: T, share: T) -> T::Mask {
         let [q0, q1, q2] = self.q;
         let [k0, k1, _] = self.k;
         // The terms must also decrease from the first on: large powers of the distance from the zeros of q
@@ -53,9 +56,9 @@ impl<T: Real> SlidingArc<T> {
         let power = power * power;
         let power = power * power;
         let power = power * power;
-        power * power * T::default_epsilon() >= share
-            && rise <= fall
-            && rise * rise * last <= constant::<T>(4.0) * q2 * fall * fall
+        let small = share.at_most(power * power * T::default_epsilon());
+        let falls = || (rise * rise * last).at_most(constant::<T>(4.0) * q2 * fall * fall);
+        small.and(|| rise.at_most(fall)).and(falls)
     }
 
     /// The state where slip stops (g < 0 at the stable end), and the normal work since compression ended.
@@ -102,17 +105,23 @@ impl<T: Real> SlidingArc<T> {
         let sigma_u = point.sigma * point.w * point.w;
         let before = point.state.normal / sigma_u;
         let worked = point.state.work.abs() / (sigma_u * sigma_u * self.mu);
+        let mut going = T::Mask::all();
         for _ in 0..BLOCKS {
+            let before_block = total;
             if HERE {
                 block_here(&mut rows, &mut sources, &mut taps, &mut total, zero);
             } else {
                 block(&mut rows, &mut sources, &mut taps, &mut total);
             }
+            total = T::iterated(going, || total, before_block);
             let [[a, b, c, d], [a1, b1, c1, d1], ..] = rows;
             let [sum, .., rubbed] = total;
             // The last two terms, compared with the whole impulse and the whole work since the start.
             let left = (a.abs() + b.abs() + c.abs()) + (a1.abs() + b1.abs() + c1.abs());
-            if left <= eps * (sum + before) && d.abs() + d1.abs() <= eps * (rubbed + worked) {
+            let ends = left.at_most(eps * (sum + before));
+            let ends = ends.and(|| (d.abs() + d1.abs()).at_most(eps * (rubbed + worked)));
+            going = going.and(|| ends.not());
+            if !going.any() {
                 break;
             }
         }
@@ -141,7 +150,7 @@ impl<T: Real> SlidingArc<T> {
 /// A function of its own: the bound of a collision's instructions (`tests/firmware/work.awk`) counts its
 /// calls.
 #[inline(never)]
-fn block<T: Real>(
+fn block<T: Arithmetic>(
     rows: &mut [Row<T>; BLOCK + 2],
     sources: &mut [Row<T>; BLOCK],
     taps: &mut Taps<T>,
@@ -152,7 +161,7 @@ fn block<T: Real>(
 
 /// [`block`] as a part of the caller.
 #[inline(always)]
-fn block_here<T: Real>(
+fn block_here<T: Arithmetic>(
     rows: &mut [Row<T>; BLOCK + 2],
     sources: &mut [Row<T>; BLOCK],
     taps: &mut Taps<T>,
@@ -194,11 +203,15 @@ fn block_here<T: Real>(
 }
 
 #[inline(always)]
-fn mul_add<T: Real>([a0, a1, a2, a3]: Row<T>, [b0, b1, b2, b3]: Row<T>, [c0, c1, c2, c3]: Row<T>) -> Row<T> {
+fn mul_add<T: Arithmetic>(
+    [a0, a1, a2, a3]: Row<T>,
+    [b0, b1, b2, b3]: Row<T>,
+    [c0, c1, c2, c3]: Row<T>,
+) -> Row<T> {
     [fma(a0, b0, c0), fma(a1, b1, c1), fma(a2, b2, c2), fma(a3, b3, c3)]
 }
 
 #[inline(always)]
-fn added<T: Real>([a0, a1, a2, a3]: Row<T>, [b0, b1, b2, b3]: Row<T>) -> Row<T> {
+fn added<T: Arithmetic>([a0, a1, a2, a3]: Row<T>, [b0, b1, b2, b3]: Row<T>) -> Row<T> {
     [a0 + b0, a1 + b1, a2 + b2, a3 + b3]
 }

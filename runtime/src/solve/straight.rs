@@ -11,6 +11,7 @@ use super::{
 use crate::scalar::{Real, constant};
 
 /// How a sliding arc ends.
+#[derive(Clone, Copy)]
 pub(crate) enum Slide<T: Real> {
     /// The law ended the collision while the contact slid with this velocity.
     Ended(State<T>, Vector2<T>),

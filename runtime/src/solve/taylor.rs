@@ -3,9 +3,9 @@
 //! Theory: docs/theory.md, section 8.5.
 
 use super::sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc};
-use crate::scalar::{Real, constant, fma};
+use crate::scalar::{Arithmetic, constant, fma};
 
-impl<T: Real> ArcPoint<T> {
+impl<T: Arithmetic> ArcPoint<T> {
     /// Moves the point by `step` in lambda with an error of third order.
     #[inline(always)]
     pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {

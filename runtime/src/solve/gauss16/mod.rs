@@ -16,11 +16,11 @@ use super::{
     lanes::{Lanes, exp},
     sliding_arc::{ArcPoint, SlidingArc},
 };
-use crate::scalar::{Real, constant, dot, fma};
+use crate::scalar::{Arithmetic, constant, dot, fma};
 
 /// The coefficients of p(w) / w in the unit `middle` of w, for a quadratic p; `inverse` is 1 / `middle`.
 #[inline(always)]
-fn about<T: Real>([p0, p1, p2]: [T; 3], middle: T, inverse: T) -> [T; 3] {
+fn about<T: Arithmetic>([p0, p1, p2]: [T; 3], middle: T, inverse: T) -> [T; 3] {
     [p0 * inverse, p1, p2 * middle]
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Panel<T> {
     left: u32,
 }
 
-impl<T: Real> Panel<T> {
+impl<T: Arithmetic> Panel<T> {
     /// A panel whose contents mean nothing yet: `step` overwrites all of them. `any` is any number that
     /// depends on the input.
     #[inline]
@@ -87,7 +87,7 @@ impl<T: Real> Panel<T> {
     }
 }
 
-impl<T: Real> SlidingArc<T> {
+impl<T: Arithmetic> SlidingArc<T> {
     /// Fills a panel whose middle is at w = `middle` (`unit` is its inverse). `s` is the parameter of the map
     /// from t to w.
     #[inline(always)]
@@ -183,8 +183,8 @@ impl<T: Real> SlidingArc<T> {
         panel.ends = [begin.abs(), end.abs(), begin.abs(), end.abs()];
         Self::total(panel);
         let [before, after, ..] = panel.ends;
-        let before = if begin > T::zero() { one / before } else { before };
-        let after = if end < T::zero() { one / after } else { after };
+        let before = T::choose(T::zero().below(begin), || one / before, || before);
+        let after = T::choose(end.below(T::zero()), || one / after, || after);
         let Panel { rate, log, .. } = &*panel;
         let [first, second, third, rubbed] =
             [sum(rate.ahead), sum(rate.behind), sum(log.ahead), sum(log.behind)];
@@ -281,7 +281,7 @@ impl<T: Real> SlidingArc<T> {
 
 /// The terms of one node in the four sums.
 #[inline(always)]
-fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) -> [T; 4] {
+fn terms<T: Arithmetic>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) -> [T; 4] {
     let slip = grown * e;
     let value = slip * inverse;
     let second = value * constant(weight);
@@ -291,13 +291,13 @@ fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) ->
 
 /// The sum of the eight pairs.
 #[inline(always)]
-fn sum<T: Real>([a, b, c, d, e, f, g, h]: [T; HALF]) -> T {
+fn sum<T: Arithmetic>([a, b, c, d, e, f, g, h]: [T; HALF]) -> T {
     ((a + e) + (b + f)) + ((c + g) + (d + h))
 }
 
 /// The integrals of a function from the middle to each node (in `log`), and to both ends (returned).
 #[inline(always)]
-fn integrals<T: Real>(rate: &Nodes<T>, log: &mut Nodes<T>) -> [T; 2] {
+fn integrals<T: Arithmetic>(rate: &Nodes<T>, log: &mut Nodes<T>) -> [T; 2] {
     let zero = T::zero();
     let (mut even, mut odd) = ([zero; HALF], [zero; HALF]);
     for (((even, odd), ahead), behind) in even.iter_mut().zip(&mut odd).zip(&rate.ahead).zip(&rate.behind) {
@@ -305,10 +305,20 @@ fn integrals<T: Real>(rate: &Nodes<T>, log: &mut Nodes<T>) -> [T; 2] {
         *odd = *ahead - *behind;
     }
     let (mut rise, mut bend) = ([zero; HALF], [zero; HALF]);
-    for (((even, odd), rows), columns) in even.iter().zip(&odd).zip(&EVEN).zip(&ODD) {
-        for (((rise, bend), row), column) in rise.iter_mut().zip(&mut bend).zip(rows).zip(columns) {
-            *rise = fma(*even, constant(*row), *rise);
-            *bend = fma(*odd, constant(*column), *bend);
+    if T::SEVERAL {
+        // The same sums one after the other: all of them at once have no place in the registers.
+        for (node, (rise, bend)) in rise.iter_mut().zip(&mut bend).enumerate() {
+            for (((even, odd), rows), columns) in even.iter().zip(&odd).zip(&EVEN).zip(&ODD) {
+                *rise = fma(*even, constant(rows[node]), *rise);
+                *bend = fma(*odd, constant(columns[node]), *bend);
+            }
+        }
+    } else {
+        for (((even, odd), rows), columns) in even.iter().zip(&odd).zip(&EVEN).zip(&ODD) {
+            for (((rise, bend), row), column) in rise.iter_mut().zip(&mut bend).zip(rows).zip(columns) {
+                *rise = fma(*even, constant(*row), *rise);
+                *bend = fma(*odd, constant(*column), *bend);
+            }
         }
     }
     let (mut halves, mut sides) = ([zero; HALF], [zero; HALF]);
