@@ -7,7 +7,7 @@ use std::ops::Range;
 use hodograph::nalgebra::Vector3;
 use hodograph::{
     CollisionError, CollisionOutcome, ComponentKind, Impact, ImpactError, Mechanism, ReducedMatrix,
-    StateError, Surface, solve,
+    StateError, Surface,
 };
 use hodograph_program::interpret::columns::LANES;
 pub use hodograph_program::interpret::{Column, Columns, Failed, Table};
@@ -19,6 +19,9 @@ use crate::routines::{OfContact, Request};
 
 /// So many rows are one task for a core.
 const TASK: usize = 16 * LANES;
+
+/// So many collisions are solved together.
+const TOGETHER: usize = 8 * LANES;
 
 /// Calls `f` with ranges that make up `0..rows`, on all cores where the feature `parallel` is on; the answers
 /// come in the order of the rows. The ranges, and so the bits of what is computed in each, do not depend on
@@ -108,30 +111,58 @@ impl Collisions {
         rows: Range<usize>,
         with: &mut dyn FnMut(usize, RowOutcome<'_>),
     ) {
-        let mechanism = &self.mechanism;
-        let mut numbers = vec![0.0; self.columns.len()];
+        for start in rows.clone().step_by(TOGETHER) {
+            self.solve_together(
+                table,
+                surface,
+                start..(start + TOGETHER).min(rows.end).min(table.rows),
+                with,
+            );
+        }
+    }
+
+    /// [`Self::solve`] for so few rows that what is known of all of them stays near the core.
+    fn solve_together(
+        &self,
+        table: &Table<'_>,
+        surface: &dyn Fn(usize) -> Surface<f64>,
+        rows: Range<usize>,
+        with: &mut dyn FnMut(usize, RowOutcome<'_>),
+    ) {
+        let (mechanism, contact, width) = (&self.mechanism, self.contact, self.columns.len());
+        let mut numbers = vec![0.0; rows.len() * width];
+        let mut failures = vec![None; rows.len()];
+        self.columns.by_rows(table, rows.clone(), &mut numbers, &mut failures);
+        let regular: Vec<usize> =
+            (0..rows.len()).filter(|&place| failures.get(place).is_some_and(Option::is_none)).collect();
+        let numbers_of = |place: usize| numbers.get(place * width..(place + 1) * width).unwrap_or(&[]);
+        let known =
+            |&place: &usize| (mechanism.known(contact, numbers_of(place)), surface(rows.start + place));
+        let collisions: Vec<_> = regular.iter().map(known).collect();
+        let mut hits: Vec<Option<_>> = vec![None; collisions.len()];
+        mechanism.resolve_each(contact, &collisions, |place, hit| {
+            hits.get_mut(place).into_iter().for_each(|slot| *slot = Some(hit));
+        });
         let freedom = Mechanism::count(mechanism, ComponentKind::Speed);
         let mut speeds = vec![0.0; freedom];
-        self.columns.for_each_block(table, rows, |block| {
-            let results: Vec<&[f64]> = (0..self.columns.len()).map(|result| block.column(result)).collect();
-            for (lane, failure) in block.failures().iter().enumerate() {
-                let row = block.first + lane;
-                if let Some(failed) = failure {
-                    with(row, Err(mechanism.state_error(*failed).into()));
-                    continue;
-                }
-                for (number, results) in numbers.iter_mut().zip(&results) {
-                    *number = results[lane];
-                }
-                let before = (0..freedom)
-                    .map(|speed| table.speeds.get(speed).map_or(f64::NAN, |column| column.get(row)));
-                speeds.iter_mut().zip(before).for_each(|(speed, before)| *speed = before);
-                match mechanism.struck_by_numbers(self.contact, &numbers, &surface(row), &mut speeds) {
-                    Ok(outcome) => with(row, Ok((outcome, &speeds))),
-                    Err(error) => with(row, Err(error.into())),
-                }
+        let mut solved = collisions.iter().zip(hits);
+        for (place, (row, failure)) in rows.clone().zip(failures).enumerate() {
+            if let Some(failed) = failure {
+                with(row, Err(mechanism.state_error(failed).into()));
+                continue;
             }
-        });
+            match solved.next() {
+                Some(((known, _), Some(Ok(hit)))) => {
+                    let before = (0..freedom)
+                        .map(|speed| table.speeds.get(speed).map_or(f64::NAN, |column| column.get(row)));
+                    speeds.iter_mut().zip(before).for_each(|(speed, before)| *speed = before);
+                    let outcome = mechanism.told(contact, numbers_of(place), &mut speeds, known, hit);
+                    with(row, Ok((outcome, &speeds)));
+                }
+                Some((_, Some(Err(error)))) => with(row, Err(error.into())),
+                _ => {}
+            }
+        }
     }
 }
 
@@ -153,10 +184,24 @@ impl Impacts<'_> {
         rows: Range<usize>,
         with: &mut dyn FnMut(usize, Result<Impact<f64>, ImpactError<f64>>),
     ) {
-        for row in rows {
+        let collision = |row: usize| {
             let matrix = ReducedMatrix::from(self.matrix.map(|column| column.get(row)));
             let velocity = Vector3::from(self.velocity.map(|column| column.get(row)));
-            with(row, solve(&matrix, &velocity, &surface(row)));
+            (matrix, velocity, surface(row))
+        };
+        #[cfg(feature = "lanes")]
+        for start in rows.clone().step_by(TOGETHER) {
+            let rows = start..(start + TOGETHER).min(rows.end);
+            let mut answers: Vec<Option<_>> = vec![None; rows.len()];
+            hodograph::lanes::solve_each(rows.clone().map(collision), |place, answer| {
+                answers.get_mut(place).into_iter().for_each(|slot| *slot = Some(answer));
+            });
+            rows.zip(answers.into_iter().flatten()).for_each(|(row, answer)| with(row, answer));
+        }
+        #[cfg(not(feature = "lanes"))]
+        for row in rows {
+            let (matrix, velocity, surface) = collision(row);
+            with(row, hodograph::solve(&matrix, &velocity, &surface));
         }
     }
 }

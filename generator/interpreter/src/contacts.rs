@@ -134,8 +134,26 @@ impl InterpretedMechanism {
         }
     }
 
+    /// Solves collisions of a contact, each on its surface; `answer` is called once for each with its place, in any order.
+    #[cfg(feature = "internal")]
+    pub(crate) fn resolve_each(
+        &self,
+        index: usize,
+        contacts: &[(Contact<f64>, Surface<f64>)],
+        mut answer: impl FnMut(usize, Result<Resolved<f64>, ImpactError<f64>>),
+    ) {
+        #[cfg(feature = "lanes")]
+        if let Some(Structure::General) | None = self.program.structures.get(index) {
+            hodograph::generated::resolve_each(contacts, answer);
+            return;
+        }
+        for (place, (contact, surface)) in contacts.iter().enumerate() {
+            answer(place, self.resolve(index, contact, surface));
+        }
+    }
+
     /// The contact as the runtime takes it, from the numbers of `COLLISION`.
-    fn known(&self, contact: usize, numbers: &[f64]) -> Contact<f64> {
+    pub(crate) fn known(&self, contact: usize, numbers: &[f64]) -> Contact<f64> {
         let remainder = CORE + self.size(contact, ContactQuantity::Response);
         let prescribed = remainder + self.size(contact, ContactQuantity::Remainder);
         let there = |quantity, at| match self.size(contact, quantity) {
@@ -188,19 +206,6 @@ impl InterpretedMechanism {
         Ok(self.outcome(contact, &numbers, speeds, resolve)?)
     }
 
-    #[cfg(feature = "internal")]
-    /// The collision of a contact of which `numbers` are those of `COLLISION`. `speeds` are those before it
-    /// and become those after it.
-    pub(crate) fn struck_by_numbers(
-        &self,
-        contact: usize,
-        numbers: &[f64],
-        surface: &Surface<f64>,
-        speeds: &mut [f64],
-    ) -> Result<CollisionOutcome<f64>, ImpactError<f64>> {
-        self.outcome(contact, numbers, speeds, |known| self.resolve(contact, known, surface))
-    }
-
     fn outcome(
         &self,
         contact: usize,
@@ -209,10 +214,22 @@ impl InterpretedMechanism {
         resolve: impl FnOnce(&Contact<f64>) -> Result<Resolved<f64>, ImpactError<f64>>,
     ) -> Result<CollisionOutcome<f64>, ImpactError<f64>> {
         let known = self.known(contact, numbers);
-        let hit = resolve(&known)?;
+        Ok(self.told(contact, numbers, speeds, &known, resolve(&known)?))
+    }
+
+    /// What is told of a solved collision of which `numbers` are those of `COLLISION`. `speeds` are those before it and
+    /// become those after it.
+    pub(crate) fn told(
+        &self,
+        contact: usize,
+        numbers: &[f64],
+        speeds: &mut [f64],
+        known: &Contact<f64>,
+        hit: Resolved<f64>,
+    ) -> CollisionOutcome<f64> {
         let response = CORE + self.size(contact, ContactQuantity::Response);
         self.after(contact, speeds, numbers.get(CORE..response).unwrap_or(&[]), hit.impulse.into());
-        Ok(hit.outcome(known.normal))
+        hit.outcome(known.normal)
     }
 
     /// A closed contact of which `decide` finds mode and force.

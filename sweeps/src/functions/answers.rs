@@ -55,8 +55,8 @@ impl Answers {
         }
     }
 
-    /// Appends a row with these numbers; missing ones are 0.
-    pub fn answer(&mut self, course: Option<(Path, u32)>, numbers: impl IntoIterator<Item = f64>) {
+    /// Appends a row with the numbers of these lists; missing ones are 0.
+    pub fn answer(&mut self, course: Option<(Path, u32)>, lists: &[&[f64]]) {
         self.kinds.append_value(OK);
         self.valid.push(true);
         if let Some((paths, compressions)) = &mut self.course {
@@ -64,8 +64,11 @@ impl Answers {
             paths.append_value(path_name(path));
             compressions.push(count as i32);
         }
-        let mut numbers = numbers.into_iter();
-        self.numbers.iter_mut().for_each(|column| column.push(numbers.next().unwrap_or(0.0)));
+        let mut columns = self.numbers.iter_mut();
+        for list in lists {
+            list.iter().zip(&mut columns).for_each(|(&number, column)| column.push(number));
+        }
+        columns.for_each(|column| column.push(0.0));
     }
 
     /// Appends a row without an answer.

@@ -114,21 +114,9 @@ impl Batch {
         }
     }
 
-    /// The surface of a row; missing parts are those of `stated`.
-    ///
-    /// # Errors
-    ///
-    /// The kind of a row whose law is unknown.
-    pub fn surface(&self, row: usize, stated: Option<Surface<f64>>) -> Result<Surface<f64>, &'static str> {
-        let number = |place, stated: Option<f64>| {
-            self.given(place).map(|column| column.get(row)).or(stated).unwrap_or(f64::NAN)
-        };
-        let law = match &self.law {
-            Some(law) => Law::named(law.value(row)),
-            None => stated.map(|stated| stated.law),
-        };
-        let (mu, e) = (stated.map(|stated| stated.mu), stated.map(|stated| stated.e));
-        Ok(Surface { mu: number(Place::Mu, mu), e: number(Place::E, e), law: law.ok_or(UNKNOWN_LAW)? })
+    /// The surfaces of the rows.
+    pub fn surfaces(&self) -> Surfaces<'_> {
+        Surfaces { mu: self.given(Place::Mu), e: self.given(Place::E), law: self.law.as_ref() }
     }
 
     /// The contact of a row: the named one, or the only one.
@@ -160,6 +148,32 @@ impl Batch {
             }
         }
         all
+    }
+}
+
+/// The columns of the surfaces.
+pub struct Surfaces<'a> {
+    mu: Option<Column<'a>>,
+    e: Option<Column<'a>>,
+    law: Option<&'a StringArray>,
+}
+
+impl Surfaces<'_> {
+    /// The surface of a row; missing parts are those of `stated`.
+    ///
+    /// # Errors
+    ///
+    /// The kind of a row whose law is unknown.
+    pub fn of(&self, row: usize, stated: Option<Surface<f64>>) -> Result<Surface<f64>, &'static str> {
+        let number = |given: Option<Column<'_>>, stated: Option<f64>| {
+            given.map(|column| column.get(row)).or(stated).unwrap_or(f64::NAN)
+        };
+        let law = match self.law {
+            Some(law) => Law::named(law.value(row)),
+            None => stated.map(|stated| stated.law),
+        };
+        let (mu, e) = (stated.map(|stated| stated.mu), stated.map(|stated| stated.e));
+        Ok(Surface { mu: number(self.mu, mu), e: number(self.e, e), law: law.ok_or(UNKNOWN_LAW)? })
     }
 }
 

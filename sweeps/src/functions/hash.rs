@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{Array, ArrayRef, AsArray, UInt64Array};
+use datafusion::arrow::buffer::NullBuffer;
 use datafusion::arrow::compute::cast;
 use datafusion::arrow::datatypes::{DataType, Float64Type, Int64Type, UInt64Type};
 use datafusion::common::{Result, plan_err};
@@ -45,18 +46,25 @@ fn hashable(data_type: &DataType) -> bool {
     }
 }
 
+/// Each hash with the value of its row, or with NULL.
+fn each(hashes: &mut [u64], nulls: Option<NullBuffer>, value: impl Fn(&mut u64, usize)) {
+    match nulls {
+        None => hashes.iter_mut().enumerate().for_each(|(row, hash)| value(hash, row)),
+        Some(nulls) => hashes
+            .iter_mut()
+            .zip(&nulls)
+            .enumerate()
+            .for_each(|(row, (hash, valid))| if valid { value(hash, row) } else { absorb(hash, NULL) }),
+    }
+}
+
 fn absorb_array(hashes: &mut [u64], array: &ArrayRef) -> Result<()> {
     let nulls = array.logical_nulls();
     let valid = |row: usize| nulls.as_ref().is_none_or(|nulls| nulls.is_valid(row));
-    let mut each = |bits: &dyn Fn(&mut u64, usize)| {
-        for (row, hash) in hashes.iter_mut().enumerate() {
-            if valid(row) { bits(hash, row) } else { absorb(hash, NULL) }
-        }
-    };
     match array.data_type() {
-        DataType::Null => each(&|_, _| {}),
+        DataType::Null => each(hashes, nulls, |_, _| {}),
         DataType::Struct(_) => {
-            each(&|hash, _| absorb(hash, 1));
+            each(hashes, nulls, |hash, _| absorb(hash, 1));
             for column in array.as_struct().columns() {
                 absorb_array(hashes, column)?;
             }
@@ -69,34 +77,34 @@ fn absorb_array(hashes: &mut [u64], array: &ArrayRef) -> Result<()> {
                     continue;
                 }
                 let items = lists.value(row);
-                let mut each = vec![0; items.len()];
-                absorb_array(&mut each, &items)?;
+                let mut each_item = vec![0; items.len()];
+                absorb_array(&mut each_item, &items)?;
                 absorb(hash, items.len() as u64);
-                each.iter().for_each(|&item| absorb(hash, item));
+                each_item.iter().for_each(|&item| absorb(hash, item));
             }
         }
         DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => {
             let text = cast(array, &DataType::Utf8)?;
             let text = text.as_string::<i32>();
-            each(&|hash, row| absorb_text(hash, text.value(row)));
+            each(hashes, nulls, |hash, row| absorb_text(hash, text.value(row)));
         }
         DataType::Boolean => {
             let values = array.as_boolean();
-            each(&|hash, row| absorb(hash, u64::from(values.value(row))));
+            each(hashes, nulls, |hash, row| absorb(hash, u64::from(values.value(row))));
         }
         DataType::UInt64 => {
             let values = array.as_primitive::<UInt64Type>().values();
-            each(&|hash, row| absorb(hash, values[row]));
+            each(hashes, nulls, |hash, row| absorb(hash, values[row]));
         }
         other if other.is_integer() => {
             let values = cast(array, &DataType::Int64)?;
             let values = values.as_primitive::<Int64Type>().values();
-            each(&|hash, row| absorb(hash, values[row] as u64));
+            each(hashes, nulls, |hash, row| absorb(hash, values[row] as u64));
         }
         other if other.is_floating() => {
             let values = cast(array, &DataType::Float64)?;
             let values = values.as_primitive::<Float64Type>().values();
-            each(&|hash, row| absorb(hash, values[row].to_bits()));
+            each(hashes, nulls, |hash, row| absorb(hash, values[row].to_bits()));
         }
         other => return plan_err!("outcome_hash does not take {other}"),
     }

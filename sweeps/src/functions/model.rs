@@ -291,9 +291,9 @@ fn push(answers: &mut Answers, solved: Solved<'_>) {
         Ok((outcome, speeds)) => {
             let impact = &outcome.impact;
             let works = [impact.contact_work, impact.normal_work, outcome.energy_change];
-            let vectors = outcome.approach.iter().chain(&impact.impulse).chain(&impact.velocity).copied();
-            let numbers = vectors.chain(works).chain(speeds.iter().copied());
-            answers.answer(Some((impact.path, impact.compressions)), numbers);
+            let (approach, impulse) = (outcome.approach.as_slice(), impact.impulse.as_slice());
+            let lists = [approach, impulse, impact.velocity.as_slice(), &works, speeds];
+            answers.answer(Some((impact.path, impact.compressions)), &lists);
         }
         Err(error) => answers.refuse(error.kind()),
     }
@@ -302,13 +302,15 @@ fn push(answers: &mut Answers, solved: Solved<'_>) {
 impl ModelFunction {
     fn collide(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
         let (table, mechanism) = (batch.table(&prepared.defaults), self.mechanism()?);
+        let surfaces = batch.surfaces();
+        let stated: Vec<_> = (0..prepared.contacts.len()).map(|contact| mechanism.surface(contact)).collect();
         // rows with invalid arguments get their error in order
         let asked = |row: usize| -> Result<(usize, Surface<f64>), &'static str> {
             if !batch.valid[row] {
                 return Err(NULL);
             }
             let contact = batch.contact(&prepared.contacts, row)?;
-            Ok((contact, batch.surface(row, mechanism.surface(contact))?))
+            Ok((contact, surfaces.of(row, stated.get(contact).copied().flatten())?))
         };
         let asked: Vec<_> = (0..batch.rows).map(asked).collect();
         let nowhere = Surface { mu: f64::NAN, e: f64::NAN, law: Law::Newton };
@@ -339,7 +341,7 @@ impl ModelFunction {
         prepared: &Prepared,
         answers: &mut Answers,
     ) -> Result<()> {
-        let table = batch.table(&prepared.defaults);
+        let (table, surfaces) = (batch.table(&prepared.defaults), batch.surfaces());
         let mut machine = self.mechanism()?.clone();
         let mut state = Row::new(&prepared.defaults);
         let mut speeds = vec![0.0; prepared.defaults[1].len()];
@@ -351,7 +353,7 @@ impl ModelFunction {
                     (_, false, _) => answers.refuse(NULL),
                     (Some(error), ..) => answers.refuse(error.kind()),
                     (_, _, Err(kind)) => answers.refuse(kind),
-                    (None, true, Ok(contact)) => match batch.surface(row, machine.surface(contact)) {
+                    (None, true, Ok(contact)) => match surfaces.of(row, machine.surface(contact)) {
                         Err(kind) => answers.refuse(kind),
                         Ok(surface) => {
                             state.read(&table, row);
@@ -402,7 +404,7 @@ impl ModelFunction {
                         *number = block.column(result).get(lane).copied().unwrap_or(0.0);
                     }
                     if numbers.iter().all(|number| number.is_finite()) {
-                        answers.answer(None, numbers.iter().copied());
+                        answers.answer(None, &[&numbers]);
                     } else {
                         answers.refuse("not_finite");
                     }

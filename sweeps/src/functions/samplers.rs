@@ -17,8 +17,8 @@ const SEQUENCE: u64 = 1 << 16;
 /// Philox 4x32-10 of Salmon et al., *Parallel random numbers: as easy as 1, 2, 3* (2011).
 pub fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     for _ in 0..10 {
-        let [a, b] =
-            [(0xd251_1f53, counter[0]), (0xcd9e_8d57, counter[2])].map(|(m, c): (u64, u32)| m * u64::from(c));
+        // Written out, as are the conversions below: `map` of an array would be a call for each of them.
+        let (a, b) = (0xd251_1f53 * u64::from(counter[0]), 0xcd9e_8d57 * u64::from(counter[2]));
         counter = [
             (b >> 32) as u32 ^ counter[1] ^ key[0],
             b as u32,
@@ -30,12 +30,19 @@ pub fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     counter
 }
 
+/// The number in [0, 1) of 53 of these bits.
+#[inline]
+fn number(high: u32, low: u32) -> f64 {
+    let bits = (u64::from(high) << 32 | u64::from(low)) >> 11;
+    bits as f64 / (1_u64 << 53) as f64
+}
+
 /// Two numbers in [0, 1) with 53 bits each.
 fn pair(row: i64, dimension: i64, seed: i64) -> [f64; 2] {
     let [row, dimension] = [row as u64, dimension as u64];
     let counter = [row as u32, (row >> 32) as u32, dimension as u32, (dimension >> 32) as u32];
-    let [a, b, c, d] = philox(counter, [seed as u32, (seed as u64 >> 32) as u32]).map(u64::from);
-    [(a << 32 | b) >> 11, (c << 32 | d) >> 11].map(|bits| bits as f64 / (1_u64 << 53) as f64)
+    let [a, b, c, d] = philox(counter, [seed as u32, (seed as u64 >> 32) as u32]);
+    [number(a, b), number(c, d)]
 }
 
 /// A point of a scrambled Sobol sequence, in [0, 1).
@@ -99,6 +106,11 @@ impl ScalarUDFImpl for Sampler {
         let [rows, dimensions, seeds] =
             [rows, dimensions, seeds].map(|array| array.as_primitive::<Int64Type>());
         let most = i64::from(sobol_burley::NUM_DIMENSIONS);
+        if self.kind == Kind::Uniform && arrays.iter().all(|array| array.null_count() == 0) {
+            let each = rows.values().iter().zip(dimensions.values()).zip(seeds.values());
+            let numbers = each.map(|((row, dimension), seed)| pair(*row, *dimension, *seed)[0]);
+            return Ok(ColumnarValue::Array(Arc::new(Float64Array::from_iter_values(numbers))));
+        }
         let number = |index: usize| {
             if rows.is_null(index) || dimensions.is_null(index) || seeds.is_null(index) {
                 return Ok(None);

@@ -97,21 +97,30 @@ impl ScalarUDFImpl for Solve {
         let impacts = Impacts { matrix: [0, 1, 2, 3, 4, 5].map(column), velocity: [6, 7, 8].map(column) };
         let (mu, e) = (column(9), column(10));
         let mut answers = Answers::new(true, NUMBERS.len(), rows);
-        for row in 0..rows {
+        let asked = |row: usize| {
             if laws.is_null(row) || numbers.iter().any(|numbers| numbers.is_null(row)) {
-                answers.refuse(NULL);
+                return Err(NULL);
+            }
+            let law = Law::named(laws.value(row)).ok_or(super::UNKNOWN_LAW)?;
+            Ok(Surface { mu: mu.get(row), e: e.get(row), law })
+        };
+        let asked: Vec<_> = (0..rows).map(asked).collect();
+        let nowhere = Surface { mu: f64::NAN, e: f64::NAN, law: Law::Newton };
+        let surface = |row: usize| asked.get(row).and_then(|row| row.ok()).unwrap_or(nowhere);
+        let mut row = 0;
+        // rows with invalid arguments get their error in order
+        for alike in asked.chunk_by(|a, b| a.is_ok() && b.is_ok()) {
+            let range = row..row + alike.len();
+            row = range.end;
+            if let Some(Err(kind)) = alike.first() {
+                answers.refuse(kind);
                 continue;
             }
-            let Some(law) = Law::named(laws.value(row)) else {
-                answers.refuse(super::UNKNOWN_LAW);
-                continue;
-            };
-            let surface = Surface { mu: mu.get(row), e: e.get(row), law };
-            impacts.solve(&|_| surface, row..row + 1, &mut |_, impact| match impact {
+            impacts.solve(&surface, range, &mut |_, impact| match impact {
                 Ok(impact) => {
                     let works = [impact.contact_work, impact.normal_work];
-                    let numbers = impact.impulse.iter().chain(&impact.velocity).copied().chain(works);
-                    answers.answer(Some((impact.path, impact.compressions)), numbers);
+                    let lists = [impact.impulse.as_slice(), impact.velocity.as_slice(), &works];
+                    answers.answer(Some((impact.path, impact.compressions)), &lists);
                 }
                 Err(error) => answers.refuse(error.kind()),
             });
