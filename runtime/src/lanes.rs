@@ -209,18 +209,6 @@ macro_rules! lanes {
             ) -> [Self; N] {
                 Self::choose_all(goes_on, new, || old)
             }
-            #[inline(always)]
-            fn decide<const N: usize>(
-                holds: Self::Mask,
-                yes: impl FnOnce() -> [Self; N],
-                no: impl FnOnce() -> [Self; N],
-            ) -> [Self; N] {
-                let (some, all) = (holds.0.any(), holds.0.all());
-                let one = Self::from(0.0);
-                let no = if all { [one; N] } else { no() };
-                let yes = if some { yes() } else { [one; N] };
-                core::array::from_fn(|place| Self::choose(holds, || yes[place], || no[place]))
-            }
         }
 
         impl crate::scalar::Mask for Holds<$of> {

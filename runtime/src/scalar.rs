@@ -170,12 +170,6 @@ pub(crate) trait Arithmetic:
         new: impl FnOnce() -> [Self; N],
         old: [Self; N],
     ) -> [Self; N];
-    /// [`Self::choose_all`] where cases cost much: several compute a case only if it holds for one of them.
-    fn decide<const N: usize>(
-        holds: Self::Mask,
-        yes: impl FnOnce() -> [Self; N],
-        no: impl FnOnce() -> [Self; N],
-    ) -> [Self; N];
 }
 
 /// The numbers of several collisions, which are loaded and stored together.
@@ -297,14 +291,36 @@ impl<T: Real> Arithmetic for T {
     fn iterated<const N: usize>(_: bool, new: impl FnOnce() -> [Self; N], _: [Self; N]) -> [Self; N] {
         new()
     }
-    #[inline(always)]
-    fn decide<const N: usize>(
-        holds: bool,
-        yes: impl FnOnce() -> [Self; N],
-        no: impl FnOnce() -> [Self; N],
-    ) -> [Self; N] {
-        if holds { yes() } else { no() }
-    }
+}
+
+/// [`Arithmetic::choose_all`] where cases cost much: of one number the case that holds is computed, of several each case
+/// that holds for one of them.
+///
+/// A macro: cases that are closures may become functions of their own, which a collision would call.
+macro_rules! decide {
+    ($number:ident: $holds:expr, $yes:expr, $no:expr $(,)?) => {{
+        let holds = $holds;
+        if <$number as $crate::scalar::Arithmetic>::SEVERAL {
+            let yes = if $crate::scalar::Mask::any(holds) { $yes } else { $crate::scalar::nothing() };
+            let no = if $crate::scalar::Mask::any($crate::scalar::Mask::not(holds)) {
+                $no
+            } else {
+                $crate::scalar::nothing()
+            };
+            <$number as $crate::scalar::Arithmetic>::choose_all(holds, || yes, || no)
+        } else if $crate::scalar::Mask::any(holds) {
+            $yes
+        } else {
+            $no
+        }
+    }};
+}
+pub(crate) use decide;
+
+/// What [`decide`] has where a case holds for none.
+#[inline(always)]
+pub(crate) fn nothing<T: Arithmetic, const N: usize>() -> [T; N] {
+    [T::zero(); N]
 }
 
 /// A function of doubles or singles that does not depend on the system, or that of other numbers: which, is

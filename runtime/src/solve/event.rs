@@ -9,7 +9,7 @@ use super::{
     sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc, rough_ln},
     target::Watched,
 };
-use crate::scalar::{Arithmetic, Mask, Real, constant, dot, fma, larger, smaller};
+use crate::scalar::{Arithmetic, Mask, Real, constant, decide, dot, fma, larger, smaller};
 
 /// An event: v_n, I_n or the normal work since compression ended reaches a target.
 #[derive(Clone, Copy)]
@@ -114,35 +114,32 @@ impl<T: Arithmetic> Event<T> {
         let ratio = (impulse * g / slip).primal();
         // None is expected, or slip stops long before it.
         let none = impulse.at_most(zero).or(|| ratio.at_most(constant(-1.5)));
-        let [length] = T::decide(
-            none,
-            || [-one],
-            || {
+        let [length] = decide!(
+            T: none,
+            [-one],
+            {
                 let far = (arc.outer + arc.outer).below(point.w);
-                let late = || {
-                    // Beyond the zeros of q: the rate of slip tends to that of the stable direction.
-                    let last = arc.last_rate();
-                    let late = last / arc.q[2] - rate;
-                    [last / (one + larger(late, zero) * half)]
-                };
-                let [mean] = T::decide(far, late, || {
-                    let RateChanges { shape, .. } = arc.rate_changes(point, rates);
-                    let pull = fma(rate, pole - rates.shape, rates.change + shape) * lag * per;
-                    [fma(pull * half, impulse, g)]
-                });
+                let [mean] = decide!(
+                    T: far,
+                    {
+                        // Beyond the zeros of q: the rate of slip tends to that of the stable direction.
+                        let last = arc.last_rate();
+                        let late = last / arc.q[2] - rate;
+                        [last / (one + larger(late, zero) * half)]
+                    },
+                    {
+                        let RateChanges { shape, .. } = arc.rate_changes(point, rates);
+                        let pull = fma(rate, pole - rates.shape, rates.change + shape) * lag * per;
+                        [fma(pull * half, impulse, g)]
+                    }
+                );
                 let ratio = larger((impulse * mean / slip).primal(), constant(-0.97));
                 let small = ratio.abs().at_most(constant(1e-3));
-                let part = T::choose(small, || fma(ratio, -half, one), || rough_ln_1p(ratio) / ratio);
+                let [part] = decide!(T: small, [fma(ratio, -half, one)], [rough_ln_1p(ratio) / ratio]);
                 let part = part * impulse / slip.primal();
                 let (w, first) = (point.w.primal(), lag.primal());
-                let nearer = |length: T| {
-                    let z = smaller(length, constant(4.0)) * constant(0.125);
-                    let z = (one + z) / (one - z);
-                    let z = z * z;
-                    (first + arc.q_over_e(w * z * z)) * half * part
-                };
-                let length = nearer(first * part);
-                T::decide(far, || [length], || [nearer(length)])
+                let length = mean_lag(arc, w, first, first * part) * part;
+                decide!(T: far, [length], [mean_lag(arc, w, first, length) * part])
             },
         );
         length
@@ -167,13 +164,17 @@ impl<T: Arithmetic> Correction<T> {
         let (slope, bend) = event.slope(&point.state, rates);
         let newton = -event.at(point) / slope;
         let bent = newton * bend;
-        let far = || {
-            let falls = || {
-                T::choose(constant::<T>(-0.999).below(bent), || newton * rough_ln_1p(bent) / bent, || newton)
-            };
-            T::choose(half.below(bent), || square(newton, bent), falls)
-        };
-        let [step] = T::decide(bent.abs().at_most(half), || [newton / fma(bent, half, one)], || [far()]);
+        let [step] = decide!(T: bent.abs().at_most(half), [newton / fma(bent, half, one)], {
+            decide!(
+                T: half.below(bent),
+                [square(newton, bent)],
+                decide!(
+                    T: constant::<T>(-0.999).below(bent),
+                    [newton * rough_ln_1p(bent) / bent],
+                    [newton]
+                )
+            )
+        });
         let bend = bend.primal().abs();
         let rate = larger((rates.weight + rates.shape).primal().abs(), bend);
         let size = step.primal().abs() * larger(rate, half);
@@ -252,11 +253,21 @@ fn square<T: Arithmetic>(newton: T, bent: T) -> T {
     (newton + newton) / (one + under.sqrt())
 }
 
+/// The mean of q / e at both ends of a stretch of the arc that begins at `w`, with `first` there.
+#[inline(always)]
+fn mean_lag<T: Arithmetic>(arc: &SlidingArc<T>, w: T, first: T, length: T) -> T {
+    let one = T::one();
+    let z = smaller(length, constant(4.0)) * constant(0.125);
+    let z = (one + z) / (one - z);
+    let z = z * z;
+    (first + arc.q_over_e(w * z * z)) * constant(0.5)
+}
+
 /// ln(1 + x) with a relative error of about one per cent between -0.999 and 1000: enough for a first guess.
 #[inline(always)]
 fn rough_ln_1p<T: Arithmetic>(x: T) -> T {
     let y = T::one() + x;
     let far = x.below(constant(-0.85)).or(|| constant::<T>(8.0).below(x));
-    let [ln] = T::decide(far, || [constant::<T>(4.0) * rough_ln(y.sqrt().sqrt())], || [rough_ln(y)]);
+    let [ln] = decide!(T: far, [constant::<T>(4.0) * rough_ln(y.sqrt().sqrt())], [rough_ln(y)]);
     ln
 }

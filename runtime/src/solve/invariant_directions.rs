@@ -11,7 +11,7 @@
 
 use nalgebra::Vector2;
 
-use crate::scalar::{Arithmetic, Mask, constant, dot, either, fma, larger, length};
+use crate::scalar::{Arithmetic, Mask, constant, decide, dot, either, fma, larger, length};
 
 /// The greatest number of Newton steps; a handful suffices unless two zeros are about to merge.
 const STEPS: u32 = 32;
@@ -62,22 +62,28 @@ pub(super) fn neighbours<T: Arithmetic>(
     let behind = zero.at_most(slip.y).or(|| zero.below(slip.x).and(|| zero.below(slope)));
     let backward = || forward.not().and(|| zero.at_most(slip.x)).and(|| slip.y.below(zero));
     let (unstable, stable) = (pair.select(|| behind, backward), pair.select(|| behind.not(), backward));
-    let below = || {
-        let (x, y) = paired(p, q, delta);
-        [x, -y]
-    };
-    let left = || {
-        let (y, x) = alone(q, p, delta);
-        [-x, -y]
-    };
-    let unstable = Vector2::from(T::decide(unstable, below, left));
+    let [x, y] = decide!(
+        T: unstable,
+        {
+            let (x, y) = paired(p, q, delta);
+            [x, -y]
+        },
+        {
+            let (y, x) = alone(q, p, delta);
+            [-x, -y]
+        }
+    );
+    let unstable = Vector2::new(x, y);
     // Of the zeros in the fourth quadrant the stable one comes first, anticlockwise.
-    let below = || {
-        let (y, x) = paired(q, p, delta);
-        [x, -y]
-    };
-    let right = || <[T; 2]>::from(alone(p, q, delta));
-    let stable = Vector2::from(T::decide(stable, below, right));
+    let [x, y] = decide!(
+        T: stable,
+        {
+            let (y, x) = paired(q, p, delta);
+            [x, -y]
+        },
+        <[T; 2]>::from(alone(p, q, delta))
+    );
+    let stable = Vector2::new(x, y);
     [unstable, stable].map(|v| {
         let (x, y) = (v.x * sx, v.y * sy);
         times(&axis, &Vector2::new(x, y))
@@ -240,17 +246,19 @@ impl<T: Arithmetic> Near<T> {
         let zero = Zero::close(b, nu, rough / length(rough), sign);
         let direction = &zero.direction;
         let near = T::zero().below(direction.x).and(|| direction.y.abs().at_most(constant(0.125)));
-        let beside = || {
-            let (half, exact) = self.beside(direction, side, sign);
-            let (along, double) = (over(b, &exact), over(&over(nu, &exact), &exact));
-            let (slope, pull) = ((double.x + double.x - along.x) * sign, along.x - double.x);
-            [half.x, half.y, exact.x, exact.y, slope, pull]
-        };
-        let away = || {
-            let half = halved(direction, side);
-            [half.x, half.y, direction.x, direction.y, zero.slope, zero.pull]
-        };
-        let [x, y, along, across, slope, pull] = T::decide(near, beside, away);
+        let [x, y, along, across, slope, pull] = decide!(
+            T: near,
+            {
+                let (half, exact) = self.beside(direction, side, sign);
+                let (along, double) = (over(b, &exact), over(&over(nu, &exact), &exact));
+                let (slope, pull) = ((double.x + double.x - along.x) * sign, along.x - double.x);
+                [half.x, half.y, exact.x, exact.y, slope, pull]
+            },
+            {
+                let half = halved(direction, side);
+                [half.x, half.y, direction.x, direction.y, zero.slope, zero.pull]
+            }
+        );
         (Vector2::new(x, y), Zero { direction: Vector2::new(along, across), slope, pull })
     }
 
@@ -287,10 +295,15 @@ impl<T: Arithmetic> Near<T> {
 fn to_zero<T: Arithmetic>(value: T, slope: T, bend: T) -> T {
     let two = constant::<T>(2.0);
     let square = dot(slope, slope, -two * value, bend);
-    let rising = || -two * value / (slope + square.sqrt());
-    let falling = || (square.sqrt() - slope) / bend;
-    let steep = || T::decide(T::zero().below(slope), || [rising()], || [falling()]);
-    let [x] = T::decide(square.primal().at_most(T::zero()), || [-slope / bend], steep);
+    let [x] = decide!(
+        T: square.primal().at_most(T::zero()),
+        [-slope / bend],
+        decide!(
+            T: T::zero().below(slope),
+            [-two * value / (slope + square.sqrt())],
+            [(square.sqrt() - slope) / bend]
+        )
+    );
     x
 }
 

@@ -4,7 +4,7 @@
 //! Theory: docs/theory.md, sections 5.3 and 8.1.
 
 use super::sliding_arc::{ArcPoint, Rates, SlidingArc, wide_ln};
-use crate::scalar::{Arithmetic, Mask, Real, constant, dot, fma, larger, smaller};
+use crate::scalar::{Arithmetic, Mask, Real, constant, decide, dot, fma, larger, smaller};
 
 impl<T: Arithmetic> SlidingArc<T> {
     /// The distance in lambda by which a point lies beyond the mean modulus of the zeros of q, or a lower
@@ -49,8 +49,11 @@ impl<T: Arithmetic> SlidingArc<T> {
         let both = limited(poles, bent, rate);
         let both = both + both;
         let even = self.central[2].abs().primal().at_most((rate + rate) * self.q[2].primal());
-        let grows = || [self.reach_of_growth(point, rates, [poles, bent, rate, both * constant(0.5)], works)];
-        let [reach] = T::decide(even, || [both], grows);
+        let [reach] = decide!(
+            T: even,
+            [both],
+            [self.reach_of_growth(point, rates, [poles, bent, rate, both * constant(0.5)], works)]
+        );
         reach.primal()
     }
 
@@ -68,7 +71,7 @@ impl<T: Arithmetic> SlidingArc<T> {
         // once more, since it rises on.
         let near = (rates.growth + one).abs().primal();
         let steepest = self.growth_at(point.w, both, near, works);
-        let bisected = || {
+        let [length] = decide!(T: steepest.at_most(rate + rate), [both], {
             // A length that the growth at its own far end allows, by bisection.
             let (mut least, mut most) = (smaller(both, limited(poles, bent, steepest)), both);
             for _ in 0..4 {
@@ -82,8 +85,7 @@ impl<T: Arithmetic> SlidingArc<T> {
                 );
             }
             [least]
-        };
-        let [length] = T::decide(steepest.at_most(rate + rate), || [both], bisected);
+        });
         length + length
     }
 

@@ -20,7 +20,7 @@ use super::{
     invariant_directions::{Near, Zero, neighbours, over, times},
     restitution::State,
 };
-use crate::scalar::{Arithmetic, Mask, constant, dot, fma, larger};
+use crate::scalar::{Arithmetic, Mask, constant, decide, dot, fma, larger};
 
 /// The integrals of sigma e / q times 1, w and w^2 over lambda, along a stretch of the arc.
 pub(super) type Integrals<T> = [T; 3];
@@ -70,6 +70,7 @@ pub(super) struct ArcPoint<T: Arithmetic> {
     pub sigma: T,
 }
 
+#[cfg(feature = "lanes")]
 impl<T: Arithmetic> ArcPoint<T> {
     /// This point, and where `holds` the other one.
     #[inline(always)]
@@ -300,7 +301,7 @@ pub(super) fn rough_ln<T: Arithmetic>(x: T) -> T {
 #[inline(always)]
 pub(super) fn wide_ln<T: Arithmetic>(x: T) -> T {
     let beyond = x.below(constant(0.125)).or(|| constant::<T>(8.0).below(x));
-    let [ln] = T::decide(beyond, || [constant::<T>(4.0) * rough_ln(x.sqrt().sqrt())], || [rough_ln(x)]);
+    let [ln] = decide!(T: beyond, [constant::<T>(4.0) * rough_ln(x.sqrt().sqrt())], [rough_ln(x)]);
     ln
 }
 

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     ReducedMatrix,
-    scalar::{Arithmetic, Mask, Together, constant, larger, length},
+    scalar::{Arithmetic, Mask, Together, constant, decide, larger, length},
 };
 
 /// The slots of a group.
@@ -208,14 +208,14 @@ fn polish<L: Together>(work: &mut Work, group: &Group, watched: Watched) {
         (rough, error) = correction.errors(&event, &to, &rates);
     }
     let close = rough.at_most(close);
-    let point = ArcPoint::of(L::decide(
-        close,
-        || {
+    let point = ArcPoint::of(decide!(
+        L: close,
+        {
             let mut to = to;
             to.second_order_step(&arc, &rates, correction.step);
             to.numbers()
         },
-        || {
+        {
             let mut to = to;
             let rate_changes = arc.rate_changes(&to, &rates);
             let step = correction.refined(&event, &to, &rates, &rate_changes);
