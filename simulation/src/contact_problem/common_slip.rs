@@ -103,7 +103,7 @@ impl<'a> CommonMotion<'a> {
     }
 
     /// The common motion along the present directions, and whether slip grows (1) or decreases (-1). Where they leave
-    /// it open how fast each contact is, all are equally fast.
+    /// it open how fast each contact is, and where slip begins, all are equally fast.
     fn start(
         &self,
         problem: &Problem<'_>,
@@ -121,10 +121,12 @@ impl<'a> CommonMotion<'a> {
                 across.row_mut(j).copy_from(&turned);
             }
         }
-        // The motion nearest to equal ones of all contacts, of those along their directions.
+        // The motion nearest to equal velocities of all contacts, of those along their directions.
         let equal = DMatrix::identity(r, r) * EQUAL;
         let near = (&equal + across.tr_mul(&across)).cholesky()?;
-        let y = near.solve(&(equal * self.basis.tr_mul(&along)));
+        let all = self.basis.tr_mul(&along);
+        // Directions in which slip begins are only near those of a motion.
+        let y = if begins { all } else { near.solve(&(equal * all)) };
         let motion = &self.basis * &y;
         let rate: f64 = self
             .rows
