@@ -118,12 +118,12 @@ pub(crate) fn forces(
 }
 
 /// The directions of slip of contacts.
-pub(crate) fn slips(holds: &[Hold]) -> SmallVec<[Option<Vector2<f64>>; FEW]> {
+fn slips(holds: &[Hold]) -> SmallVec<[Option<Vector2<f64>>; FEW]> {
     holds.iter().map(Hold::direction).collect()
 }
 
 /// The modes of contacts in a problem.
-pub(crate) fn modes(holds: &[Hold]) -> SmallVec<[Mode; FEW]> {
+fn modes(holds: &[Hold]) -> SmallVec<[Mode; FEW]> {
     holds.iter().map(|hold| hold.direction().map_or(Mode::Stick, Mode::Slide)).collect()
 }
 

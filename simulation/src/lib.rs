@@ -80,7 +80,6 @@ mod single_impact;
 mod singular;
 mod slip_direction;
 mod slip_end;
-mod slip_together;
 mod smooth_parts;
 mod stage_values;
 mod start;

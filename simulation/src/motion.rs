@@ -275,8 +275,7 @@ impl<'a> Motion<'a> {
                 Ok(found)
             };
             settle_directions(support, self.closed, holds, &solve);
-            settled_direction::settle(support, self.closed, t, holds, (mu, &solve))
-                .ok_or(Failure::NoForces)?;
+            settled_direction::settle(support, self.closed, t, holds, &solve).ok_or(Failure::NoForces)?;
             let answer = forces(support, holds, mu, near.borrow().as_ref(), wanted).map_err(lacking)?;
             *last = near.into_inner().filter(|_| several);
             if several {

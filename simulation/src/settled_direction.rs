@@ -8,7 +8,6 @@ use smallvec::SmallVec;
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking};
 use crate::phase::Closed;
-use crate::slip_together::{Asked, slip_together};
 
 /// Difference of angles for derivatives, rad.
 const TURN: f64 = 1e-5;
@@ -37,7 +36,7 @@ pub(crate) fn settle(
     closed: &[Closed],
     t: f64,
     holds: &mut [Hold],
-    (mu, solve): (&[f64], &Solve<'_>),
+    solve: &Solve<'_>,
 ) -> Option<()> {
     let turning = |place: &usize| closed[*place].turning.as_ref();
     let places: SmallVec<[usize; FEW]> = (0..closed.len()).filter(|place| turning(place).is_some()).collect();
@@ -52,32 +51,7 @@ pub(crate) fn settle(
         let slip = support.slip(place);
         turning(&place).map_or(0.0, |turning| turning.rate(t) * slip.dot(d) + turning.fading(t))
     };
-    settle_along(support, mu, (holds, &places), &mut inverse, &wanted, solve)
-}
-
-/// Gives contacts the directions along which the accelerations perpendicular to them have the wanted values:
-/// [`turn_until`], and where the angles depend on each other so much that this fails, the common motion of the contacts
-/// (theory, 17.10).
-pub(crate) fn settle_along(
-    support: &ClosedContacts,
-    mu: &[f64],
-    (holds, places): (&mut [Hold], &[usize]),
-    inverse: &mut DMatrix<f64>,
-    wanted: &dyn Fn(usize, &Vector2<f64>) -> f64,
-    solve: &Solve<'_>,
-) -> Option<()> {
-    let before: SmallVec<[Hold; FEW]> = (&*holds).into();
-    if turn_until(holds, places, inverse, wanted, solve).is_some() {
-        return Some(());
-    }
-    if places.len() < 2 {
-        return None;
-    }
-    holds.copy_from_slice(&before);
-    let across = |&place: &usize| Some(wanted(place, &before[place].direction()?));
-    let across: Option<Angles> = places.iter().map(across).collect();
-    holds.copy_from_slice(&slip_together(support, mu, holds, places, &across?, Asked::Any)?);
-    Some(())
+    turn_until(holds, &places, &mut inverse, &wanted, solve)
 }
 
 /// A unit vector rotated by an angle.
@@ -116,7 +90,7 @@ pub(crate) fn slopes(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Opt
 /// Turns the directions of slip of contacts until the accelerations perpendicular to them have the wanted
 /// values. `inverse` is an approximate inverse of the derivative with respect to the angles, which is
 /// improved: Broyden's method, for one contact the secant method.
-fn turn_until(
+pub(crate) fn turn_until(
     holds: &mut [Hold],
     places: &[usize],
     inverse: &mut DMatrix<f64>,

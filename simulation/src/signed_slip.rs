@@ -17,7 +17,7 @@ use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::motion::{Evaluation, Motion};
 use crate::phase::{Closed, Turned};
-use crate::settled_direction::{Solve, across, settle_along, slopes};
+use crate::settled_direction::{Solve, across, slopes, turn_until};
 use crate::stepper::Tolerances;
 
 /// The steps of an explicit integration are at most this many times the time constant with which the
@@ -143,9 +143,7 @@ fn together(
         };
         Some((at(ahead_by)? - at(-ahead_by)?) / (2.0 * ahead_by))
     };
-    let mut mu = Vec::with_capacity(here.holds.len());
-    motion.rub(&here.support, &here.holds, &mut mu).ok()?;
-    let turns = turning(here, places, search.before, &change, (&mu, &solve), t)?;
+    let turns = turning(here, places, search.before, &change, &solve, t)?;
     let (_, speeds) = motion.split(y);
     let mut slips = Vec::with_capacity(places.len());
     let mut off = Vec::with_capacity(places.len());
@@ -293,7 +291,7 @@ fn turning(
     places: &[usize],
     before: &[Turned],
     change: &dyn Fn(&[Hold]) -> Option<DVector<f64>>,
-    (mu, solve): (&[f64], &Solve<'_>),
+    solve: &Solve<'_>,
     t: f64,
 ) -> Option<Turns> {
     let m = places.len();
@@ -323,7 +321,7 @@ fn turning(
             let k = places.iter().position(|of| *of == place).unwrap_or(0);
             rates[k][0] * here.support.slip(place).dot(d)
         };
-        settle_along(&here.support, mu, (&mut holds, places), &mut inverse, &wanted, solve)?;
+        turn_until(&mut holds, places, &mut inverse, &wanted, solve)?;
         found = Some((slopes, inverse, along));
     }
     let (slopes, inverse, along) = found?;

@@ -9,10 +9,10 @@
 use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
+use crate::contact_problem::{Mode, is_slow, slip_together, with_modes};
 use crate::forces::{Forces, Hold, Lacking};
 use crate::mode_selection::begin_along;
 use crate::phase::{Closed, mus};
-use crate::slip_together::{Asked, slip_together};
 
 /// The modes of contacts with the directions that follow from the state; `omega` holds the rates of the
 /// settled ones. `None` if there are no such directions; these are then the best that were found.
@@ -30,14 +30,43 @@ pub(crate) fn settle_directions(
     let mut directions = directions(holds);
     let across: Vec<f64> =
         settled.iter().map(|&(i, _)| closed[i].omega.unwrap_or(0.0) * support.slip(i).norm()).collect();
-    let places: Vec<usize> = settled.iter().map(|&(place, _)| place).collect();
-    if let Some(together) = slip_together(support, &mus(closed), holds, &places, &across, Asked::Slow) {
+    if let Some(together) = slow(support, closed, holds, &settled, &across) {
         holds.copy_from_slice(&together);
         return Some(());
     }
     let found = begin_along(&settled, &mut directions, &across, |directions| solve(&with(directions)).ok());
     holds.copy_from_slice(&with(&directions));
     found
+}
+
+/// The modes of contacts that slip together with such small accelerations that their directions cannot be
+/// computed from differences; `None` if the accelerations are larger.
+fn slow(
+    support: &ClosedContacts,
+    closed: &[Closed],
+    holds: &[Hold],
+    settled: &[(usize, usize)],
+    across: &[f64],
+) -> Option<Vec<Hold>> {
+    if settled.len() < 2 {
+        return None;
+    }
+    let mu = mus(closed);
+    let slips: Vec<Option<Vector2<f64>>> = holds.iter().map(Hold::direction).collect();
+    let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+    let problem = support.problem(&mu, &slips);
+    let open: Vec<usize> = settled.iter().map(|&(place, _)| place).collect();
+    let force = with_modes(&problem, &modes).ok()?.force;
+    if !is_slow(&problem, &modes, &open, &force) {
+        return None;
+    }
+    let begins = open.iter().all(|&place| support.slip(place) == Vector2::zeros());
+    let modes = slip_together(&problem, &modes, &open, (!begins).then_some(across), &force)?;
+    let hold = |mode: &Mode| match mode {
+        Mode::Slide(d) => Hold::Slide(*d),
+        _ => Hold::Stick,
+    };
+    Some(modes.iter().map(hold).collect())
 }
 
 fn directions(holds: &[Hold]) -> Vec<Option<Vector2<f64>>> {

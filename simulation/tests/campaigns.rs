@@ -494,15 +494,6 @@ fn a_foot_that_another_keeps_from_a_jam() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
-/// Four corners of a cube begin to slip on another cube with accelerations so small that their directions hardly depend on
-/// anything but each other: they slip along one common motion.
-#[test]
-fn corners_that_begin_to_slip_slowly() {
-    let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
-    near_its_start("cubes2", &[186], &mut outcomes, &mut failures);
-    assert!(failures.is_empty(), "{failures:?}");
-}
-
 /// Motions of a model from random starts near the one that it states: counts their outcomes, and lists those that fail.
 fn near_its_start(
     name: &'static str,
