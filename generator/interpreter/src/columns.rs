@@ -166,7 +166,7 @@ impl Collisions {
     }
 }
 
-/// Collisions by themselves: a column for each number of the input of [`solve`].
+/// Collisions by themselves: a column for each number of the input of [`hodograph::solve`].
 #[derive(Clone, Copy, Debug)]
 pub struct Impacts<'a> {
     /// reduced matrix nn, nt, ns, tt, ts, ss, 1/kg
