@@ -29,6 +29,8 @@ const ROUNDING: f64 = 1e-12;
 /// which such a step changes the velocities more than the free accelerations would.
 const STEP: f64 = 1e-7;
 const LARGE: f64 = 100.0;
+/// A change of velocity that is so many times smaller than slip does not end it.
+const SMALL: f64 = 4.0;
 /// At the event of a jam the determinant of the sliding contacts is not yet zero ([`crate::forces::JAM`]);
 /// friction is increased by this part in the impact.
 const MORE: f64 = 2e-5;
@@ -80,7 +82,7 @@ impl Transition<'_> {
             Ok((1.0 + MORE) * self.friction(contact, slip)?.slips)
         });
         let mu = mu.collect::<Result<Vec<f64>, SimulationError>>()?;
-        let h = STEP * self.front.scales.time;
+        let h = self.step_of_a_jam(contacts, &support);
         Ok(match impulses_of_a_jam(&support, &mu, h) {
             Some(Outcome::Impulses(outcome)) => {
                 Jam::Impact(self.hit_by(contacts, &support, speeds, &outcome, Vec::new())?)
@@ -90,6 +92,16 @@ impl Transition<'_> {
             }
             _ => Jam::Unsolved,
         })
+    }
+
+    /// The implicit step whose limit ends a jam of these contacts: so short that the accelerations without forces change no
+    /// slip by more than a small part of it. Else slow slip would end by the step itself, not by the jam.
+    fn step_of_a_jam(&self, contacts: &[usize], support: &ClosedContacts) -> f64 {
+        let sliding =
+            (0..contacts.len()).filter(|&i| matches!(self.front.phases[contacts[i]], Phase::Slide(_)));
+        let slowest = sliding.map(|i| support.slip(i).norm()).fold(f64::INFINITY, f64::min);
+        let longest = STEP * self.front.scales.time;
+        longest.min(slowest / (SMALL * LARGE * support.beta.amax()))
     }
 
     /// Whether these modes differ from those of the contacts.

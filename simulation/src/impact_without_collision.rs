@@ -12,6 +12,7 @@ use crate::impact_at_once::Jam;
 use crate::impacts::MOST;
 use crate::motion::Failure;
 use crate::phase::Phase;
+use crate::single_impact::Hit;
 use crate::transition::Transition;
 use crate::{CollisionRecord, ErrorKind, EventKind, SimulationError};
 
@@ -90,15 +91,36 @@ impl Transition<'_> {
         alone: SimulationError,
     ) -> Result<(), SimulationError> {
         let closed: Vec<usize> = (0..was.len()).filter(|&contact| was[contact].is_closed()).collect();
-        let hit = match self.impact_of_a_jam(&closed, before)? {
-            Jam::Impact(hit) => hit,
+        match self.impact_of_a_jam(&closed, before)? {
+            Jam::Impact(hit) => self.strike_jam(hit, was),
             // There are finite forces in other modes.
             Jam::Modes(choice) => {
                 self.apply(&closed, was, &choice);
-                return self.crowded(self.front.t);
+                self.crowded(self.front.t)
             }
-            Jam::Unsolved => return self.go_past_a_jam(&closed, was, alone),
-        };
+            Jam::Unsolved => self.go_past_a_jam(&closed, was, alone),
+        }
+    }
+
+    /// Contacts that have no finite forces in any modes, though none of them can be named that jams, jam together; the error
+    /// `none` if they have no impact either.
+    pub(crate) fn jam_of_all(
+        &mut self,
+        contacts: &[usize],
+        none: SimulationError,
+    ) -> Result<(), SimulationError> {
+        self.front.crowd += 1;
+        if self.front.crowd > MOST {
+            return Err(self.error(None, self.without_end(MOST)));
+        }
+        match self.impact_of_a_jam(contacts, self.here().speeds)? {
+            Jam::Impact(hit) => self.strike_jam(hit, &self.front.phases.clone()),
+            Jam::Modes(_) | Jam::Unsolved => Err(none),
+        }
+    }
+
+    /// Takes the impact of contacts that jam together, and what it makes approach.
+    fn strike_jam(&mut self, hit: Hit, was: &[Phase]) -> Result<(), SimulationError> {
         self.front.resting = false;
         let after = hit.after.clone();
         self.take_impact(hit, None);

@@ -191,7 +191,7 @@ impl Transition<'_> {
         }
     }
 
-    /// If there are no finite forces: an impact without collision if a sliding contact jams.
+    /// If there are no finite forces: an impact without collision of the sliding contact that jams, or of all together.
     pub(crate) fn without_forces(
         &mut self,
         candidates: &[usize],
@@ -205,7 +205,7 @@ impl Transition<'_> {
             Lacking::Contact(place, error) => {
                 Err(self.error(Some(candidates[place]), ErrorKind::Contact(error)))
             }
-            Lacking::Common => Err(self.failure(Failure::NoForces)),
+            Lacking::Common => self.jam_of_all(candidates, self.failure(Failure::NoForces)),
         }
     }
 
