@@ -271,6 +271,15 @@ fn extrapolated(t: f64, rate: f64, before: &Turned) -> [f64; 3] {
     }
 }
 
+/// The derivative of the slope of that polynomial with respect to the present rate.
+fn growth(t: f64, before: &Turned) -> f64 {
+    match before {
+        [Some((since, _)), _] if *since >= t => 0.0,
+        [Some(first), second] => (t - first.0).recip() + second.map_or(0.0, |second| (t - second.0).recip()),
+        _ => 0.0,
+    }
+}
+
 /// Settled directions in a state, and their turning.
 struct Turns {
     /// the modes with these directions
@@ -302,16 +311,19 @@ fn turning(
     let mut found = None;
     for round in 0..=ROUNDS {
         let slopes = slopes(&holds, places, solve)?;
-        let (mut along, mut bends) = (DVector::zeros(m), DVector::zeros(m));
+        let (mut along, mut slips) = (DVector::zeros(m), DVector::zeros(m));
         let acceleration = solve(&holds).ok()?.acceleration;
         for (k, &place) in places.iter().enumerate() {
             let d = holds[place].direction()?;
             along[k] = d.x * acceleration[3 * place + 1] + d.y * acceleration[3 * place + 2];
-            bends[k] = here.support.slip(place).dot(&d) * rates[k][1];
+            slips[k] = here.support.slip(place).dot(&d);
         }
         if round > 0 {
-            let omegas =
-                least_squares(&(&slopes - DMatrix::from_diagonal(&along)), &(bends - change(&holds)?));
+            // omega' is that of the extrapolation, a + b omega.
+            let still = DVector::from_fn(m, |k, _| extrapolated(t, 0.0, &before[places[k]])[1]);
+            let own = DVector::from_fn(m, |k, _| along[k] + slips[k] * growth(t, &before[places[k]]));
+            let right = slips.component_mul(&still) - change(&holds)?;
+            let omegas = least_squares(&(&slopes - DMatrix::from_diagonal(&own)), &right);
             for (k, &place) in places.iter().enumerate() {
                 rates[k] = extrapolated(t, omegas[k], &before[place]);
             }

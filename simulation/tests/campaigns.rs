@@ -522,6 +522,15 @@ fn contacts_that_jam_only_together() {
     }
 }
 
+/// Four corners of a cube begin to slip on another cube so slowly that turns of their directions hardly change anything:
+/// errors of the rates at which they turn must not grow from step to step.
+#[test]
+fn corners_that_begin_to_slip_slowly() {
+    let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
+    near_its_start("cubes2", &[186], &mut outcomes, &mut failures);
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
 /// Motions of a model from random starts near the one that it states: counts their outcomes, and lists those that fail.
 fn near_its_start(
     name: &'static str,

@@ -21,6 +21,10 @@ use super::{
 const ROUNDS: usize = 40;
 const TURNED: f64 = 4e-15;
 const NEARLY: f64 = 1e-11;
+/// The square of an angle, rad^2: directions that differ by less from those of a motion are taken for its own.
+const EQUAL: f64 = 1e-6;
+/// Least cosine of the angle between a contact's direction and its first common motion.
+const FORWARD: f64 = 0.5;
 
 /// Modes in which each of these contacts slips along its own acceleration, computed from modes with similar
 /// directions; `None` if there is no such common motion. `across` holds the required accelerations
@@ -37,7 +41,7 @@ pub(crate) fn slip_together(
     let mut found = with_modes_near(problem, &modes, Some(force)).ok()?;
     let wanted = |(j, &i): (usize, &usize)| across.map_or(0.0, |across| across[j] * problem.scale(i));
     let wanted: Vec<f64> = open.iter().enumerate().map(wanted).collect();
-    let (mut y, sign) = common.start(problem, &modes, &found, across.is_none())?;
+    let (mut y, sign) = common.start(problem, &modes, &found, (across.is_none(), &wanted))?;
     let mut last = f64::INFINITY;
     for _ in 0..ROUNDS {
         let step = common.step(problem, &modes, &found, &y, sign, &wanted)?;
@@ -98,21 +102,31 @@ impl<'a> CommonMotion<'a> {
         (!kept.is_empty()).then_some(Self { open, held, rows, basis })
     }
 
-    /// The common motion along the present directions, and whether slip grows (1) or decreases (-1).
+    /// The common motion along the present directions, and whether slip grows (1) or decreases (-1). Where they leave
+    /// it open how fast each contact is, and where slip begins, all are equally fast.
     fn start(
         &self,
         problem: &Problem<'_>,
         modes: &[Mode],
         found: &Admissible,
-        begins: bool,
+        (begins, wanted): (bool, &[f64]),
     ) -> Option<(DVector<f64>, f64)> {
+        let r = self.basis.ncols();
         let mut along = DVector::zeros(self.rows.len());
+        let mut across = DMatrix::zeros(self.open.len(), r);
         for (j, &i) in self.open.iter().enumerate() {
             if let Mode::Slide(d) = modes[i] {
                 along.rows_mut(2 * j, 2).copy_from(&d);
+                let turned = self.basis.row(2 * j + 1) * d.x - self.basis.row(2 * j) * d.y;
+                across.row_mut(j).copy_from(&turned);
             }
         }
-        let y = self.basis.tr_mul(&along);
+        // The motion nearest to equal velocities of all contacts, of those along their directions.
+        let equal = DMatrix::identity(r, r) * EQUAL;
+        let near = (&equal + across.tr_mul(&across)).cholesky()?;
+        let all = self.basis.tr_mul(&along);
+        // Directions in which slip begins are only near those of a motion.
+        let y = if begins { all } else { near.solve(&(equal * all)) };
         let motion = &self.basis * &y;
         let rate: f64 = self
             .rows
@@ -123,8 +137,12 @@ impl<'a> CommonMotion<'a> {
         let rate = rate / motion.norm_squared();
         // Forces in wrong directions may seem to prevent slip.
         let rate = if begins { rate.abs() } else { rate };
-        let forward = (0..self.open.len()).all(|j| two(&motion, j).dot(&two(&along, j)) > 0.5);
-        (forward && rate != 0.0 && rate.is_finite()).then(|| (rate * y, rate.signum()))
+        let forward = (0..self.open.len()).all(|j| {
+            let moves = two(&motion, j);
+            moves.dot(&two(&along, j)) > FORWARD * moves.norm()
+        });
+        let turning = near.solve(&across.tr_mul(&DVector::from_column_slice(wanted)));
+        (forward && rate != 0.0 && rate.is_finite()).then(|| (rate * y + turning, rate.signum()))
     }
 
     /// Sets the directions of the contacts to those of this motion.
