@@ -17,8 +17,8 @@ use crate::{EventKind, SimulationError};
 
 /// The step after an event is at most this many times as long as the part of the step before it.
 const AFTER: f64 = 10.0;
-/// The greatest number of events without progress in time, over the number of closed contacts; but at least as many as
-/// the second number.
+/// The greatest number of events without progress in time, each counted once for every closed contact at it; but at least
+/// as many events as the second number.
 const CROWD: [usize; 2] = [400, 64];
 /// This number of events must advance the motion by [`ADVANCE`] of the time of the problem.
 const EVENTS: usize = 500;
@@ -232,13 +232,13 @@ impl Transition<'_> {
     /// Counts events that follow each other without progress.
     pub(crate) fn crowded(&mut self, before: f64) -> Result<(), SimulationError> {
         if self.front.t - before > self.instant() {
-            self.front.crowd = 0;
+            (self.front.crowd, self.front.crowded_contacts) = (0, 0);
         }
         self.front.crowd += 1;
         let closed = self.front.phases.iter().filter(|phase| phase.is_closed()).count();
-        let most = (CROWD[0] / closed.max(1)).max(CROWD[1]);
-        if self.front.crowd > most {
-            return Err(self.error(None, self.without_end(most)));
+        self.front.crowded_contacts += closed.max(1);
+        if self.front.crowd > CROWD[1] && self.front.crowded_contacts > CROWD[0] {
+            return Err(self.error(None, self.without_end(self.front.crowd)));
         }
         let (count, since) = self.front.events;
         self.front.events = (count + 1, since);

@@ -58,8 +58,9 @@ pub(crate) struct Front {
     pub greatest: f64,
     /// the works of impacts so far, J
     pub energy: EnergyAccount,
-    /// number of events without progress in time
+    /// number of events without progress in time, and the sum of the numbers of closed contacts at them
     pub crowd: usize,
+    pub crowded_contacts: usize,
     /// number of events, and the time from which they are counted, s
     pub events: (usize, f64),
     /// the contact whose point is undefined, if the motion has ended there
@@ -97,6 +98,7 @@ impl Front {
             greatest: 0.0,
             energy: EnergyAccount::default(),
             crowd: 0,
+            crowded_contacts: 0,
             events: (0, state.time),
             ended: None,
             would_end: 0,

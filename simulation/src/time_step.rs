@@ -172,7 +172,7 @@ impl Transition<'_> {
                 };
                 self.commit(&mut step)?;
                 if step.h > self.instant() {
-                    self.front.crowd = 0;
+                    (self.front.crowd, self.front.crowded_contacts) = (0, 0);
                 }
                 self.progress(step.h)?;
                 self.on_time()
