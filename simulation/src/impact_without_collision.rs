@@ -109,6 +109,9 @@ impl Transition<'_> {
         contacts: &[usize],
         none: SimulationError,
     ) -> Result<(), SimulationError> {
+        if self.mechanism.torques_of(contacts).next().is_some() {
+            return Err(none);
+        }
         self.front.crowd += 1;
         if self.front.crowd > MOST {
             return Err(self.error(None, self.without_end(MOST)));
@@ -193,8 +196,8 @@ fn slip_that_jams(reduced: &ReducedMatrix<f64>, slip: Vector2<f64>, mu: f64) -> 
     Some(speed * (towards * cos + across * (side * (1.0 - cos * cos).sqrt())))
 }
 
-/// A contact whose slip turns into a jam within a negligible time has f / m_nn below this.
-const TURNS: f64 = 1e-2;
+/// Contacts whose slip turns into a jam within a negligible time have f below this, or f / m_nn of one.
+pub(crate) const TURNS: f64 = 1e-2;
 
 /// The surface of an impact without collision, where f = m_nn - mu m_nt with t along the slip is not yet
 /// zero, but so small that the contact jams: its friction is increased so that f becomes as small and

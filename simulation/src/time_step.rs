@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 
 use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
+use crate::impact_without_collision::TURNS;
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Phase, Turned, Turning, mus};
 use crate::settled_slip::settled;
@@ -413,9 +414,23 @@ impl Transition<'_> {
             None => match (self.singular_here(&self.closed()), self.turns_into_jam()?) {
                 (Some(contact), _) => self.end_at(contact),
                 (None, Some(contact)) => self.impact_without_collision(contact),
-                (None, None) => Err(self.error(None, ErrorKind::Stalled)),
+                (None, None) => self.stalled(),
             },
         }
+    }
+
+    /// Steps have become too short: where slip of several contacts turns into a jam of all of them, the last turn takes less
+    /// time than any step, and an impact without approach follows.
+    fn stalled(&mut self) -> Result<(), SimulationError> {
+        let stalled = self.error(None, ErrorKind::Stalled);
+        let closed = self.closed();
+        let here = self.motion(&closed).evaluate(self.front.t, &self.front.y).ok();
+        let jams = here.and_then(|here| here.forces).is_some_and(|forces| forces.f < TURNS);
+        if closed.len() < 2 || !jams {
+            return Err(stalled);
+        }
+        let contacts: Vec<usize> = closed.iter().map(|closed| closed.contact).collect();
+        self.jam_of_all(&contacts, stalled)
     }
 
     /// Decides modes anew where the closed contacts have no forces in theirs, though nothing has ended them; the error

@@ -494,6 +494,21 @@ fn a_foot_that_another_keeps_from_a_jam() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
+/// Slip of two feet of a table turns into a jam of both: their forces grow beyond all bounds within less than a step.
+#[test]
+fn feet_whose_slip_turns_into_a_jam() {
+    let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
+    let ends = near_its_start("table3", &[205], &mut outcomes, &mut failures);
+    assert!(failures.is_empty(), "{failures:?}");
+    let jam = |event: &Event| {
+        let EventKind::SimultaneousCollision(struck) = &event.kind else { return false };
+        let shares = &struck.shares;
+        shares.iter().all(|share| share.approach.abs() < 1e-9)
+            && shares.iter().any(|share| share.impulse > 1e-3)
+    };
+    assert!(ends[0].events.iter().any(jam), "{:?}", ends[0].names());
+}
+
 /// Joints of a chain lie on a floor, and one of them slides slowly towards the others. No modes have finite forces, and no
 /// contact can be named that jams: all of them have an impact without approach, which ends the slip.
 #[test]
