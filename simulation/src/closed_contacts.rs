@@ -46,6 +46,9 @@ pub(crate) struct ClosedContacts {
 
 /// The relative rounding error of the terms of a free acceleration.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// The error of a direction turns components into each other: a component has at least this part of the greatest of these
+/// errors.
+const DIRECTIONS: f64 = 1.0 / 32.0;
 /// Bodies that move side by side have relative accelerations of up to this many times that rounding error:
 /// their normals have the relative error of positions over radii.
 const IDLE: f64 = 128.0;
@@ -108,6 +111,10 @@ impl ClosedContacts {
         numbers.extend(speeds.iter().zip(accelerations).map(|(u, a)| a.abs() + turns * u.abs()));
         for (noise, column) in self.noise.iter_mut().zip(self.partials.as_slice().chunks_exact(p)) {
             *noise = ROUNDING * column.iter().zip(&*numbers).map(|(v, size)| v.abs() * size).sum::<f64>();
+        }
+        for own in self.noise.as_mut_slice().chunks_exact_mut(3) {
+            let turned = DIRECTIONS * own.iter().fold(0.0_f64, |most, noise| most.max(*noise));
+            own.iter_mut().for_each(|noise| *noise = noise.max(turned));
         }
     }
 

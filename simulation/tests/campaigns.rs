@@ -494,6 +494,14 @@ fn a_foot_that_another_keeps_from_a_jam() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
+/// Balls in a row swing side by side through the lowest point, where nothing but rounding presses them together.
+#[test]
+fn balls_that_swing_side_by_side() {
+    let (mut outcomes, mut failures) = (BTreeMap::new(), Vec::new());
+    near_its_start("cradle5", &[201], &mut outcomes, &mut failures);
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
 /// Slip of two feet of a table turns into a jam of both: their forces grow beyond all bounds within less than a step.
 #[test]
 fn feet_whose_slip_turns_into_a_jam() {
