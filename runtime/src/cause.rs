@@ -56,6 +56,8 @@ pub enum Cause {
     UnknownLaw,
     /// A contact that can close has no surface: no mu, e or law.
     NoSurface,
+    /// A dimension of a shape is not positive.
+    ImpossibleSize,
 }
 
 table! { Cause
@@ -81,4 +83,5 @@ table! { Cause
     NoMode "no_mode" "no mode of the contact fits",
     UnknownLaw "unknown_law" "no hypothesis of restitution has that name or number",
     NoSurface "no_surface" "a contact that can close has no surface",
+    ImpossibleSize "impossible_size" "a dimension of a shape is not positive",
 }

@@ -2,7 +2,9 @@
 //! 16.10 and 16.11); and contacts whose routine solves an equation (16.13 and 16.15).
 
 use hodograph::nalgebra::Vector3;
-use hodograph::{ClosedContacts, ComponentKind, Contacts, Distance, Law, State, StateError};
+use hodograph::{
+    ClosedContacts, ComponentKind, Contacts, Distance, Law, Mechanism, ParameterError, State, StateError,
+};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_random::Random;
 
@@ -28,6 +30,29 @@ fn modules_compute_what_the_program_says() {
     agree(&EggOnEgg::<f64>::default(), "simulation/models/egg_on_egg", 1);
     agree(&BallOnWaves::<f64>::default(), "models/shapes/ball_on_waves", 1);
     agree(&TyreOnHills::<f64>::default(), "models/shapes/tyre_on_hills", 1);
+}
+
+/// Dimensions that no shape has are refused by both, and the mechanism stays as it is.
+#[test]
+fn impossible_dimensions_are_refused() {
+    let refuse = |mechanism: &mut dyn Mechanism<f64>| {
+        let mut values = vec![0.0; mechanism.count(ComponentKind::Parameter)];
+        mechanism.parameter_values(&mut values).unwrap();
+        let place = mechanism.index(ComponentKind::Parameter, "a").unwrap();
+        for a in [-1.0, 0.0] {
+            let mut other = values.clone();
+            other[place] = a;
+            let error = mechanism.set_parameter_values(&other).unwrap_err();
+            assert!(matches!(error, ParameterError::Size { shape: "Table", .. }), "{error:?}");
+            assert_eq!(error.kind(), "impossible_size");
+            assert!(error.to_string().ends_with(" of `Table` is not positive"), "{error}");
+            let mut kept = vec![0.0; values.len()];
+            mechanism.parameter_values(&mut kept).unwrap();
+            assert_eq!(kept, values);
+        }
+    };
+    refuse(&mut LogOnTable::<f64>::default());
+    refuse(&mut interpreted("simulation/models/log_on_table"));
 }
 
 /// What a module says of an iteration in singles is what it says in doubles, to their rounding.
@@ -65,9 +90,13 @@ fn equations_are_solved_in_singles_too() {
     }
 }
 
-fn agree(module: &dyn Contacts<f64>, name: &str, contacts: usize) {
+fn interpreted(name: &str) -> InterpretedMechanism {
     let path = format!("{}/../{name}.mech", env!("CARGO_MANIFEST_DIR"));
-    let interpreted: InterpretedMechanism = InterpretedMechanism::read(path.as_ref()).unwrap();
+    InterpretedMechanism::read(path.as_ref()).unwrap()
+}
+
+fn agree(module: &dyn Contacts<f64>, name: &str, contacts: usize) {
+    let interpreted = interpreted(name);
     let mut random = Random::new(0x51ab_0042_77de_0001);
     for _ in 0..20 {
         let q: Vec<f64> = (0..7).map(|_| random.between(-1.0, 1.0)).collect();
@@ -130,8 +159,7 @@ fn contacts_of_several_pairs_in_one_pass() {
 }
 
 fn agree_on_pairs(module: &dyn Contacts<f64>, name: &str) {
-    let path = format!("{}/../{name}.mech", env!("CARGO_MANIFEST_DIR"));
-    let interpreted: InterpretedMechanism = InterpretedMechanism::read(path.as_ref()).unwrap();
+    let interpreted = interpreted(name);
     let count = module.count(ComponentKind::Contact);
     let pairs: Vec<Option<usize>> = (0..count + 1).map(|contact| module.pair(contact)).collect();
     assert_eq!(pairs, (0..count + 1).map(|contact| interpreted.pair(contact)).collect::<Vec<_>>());

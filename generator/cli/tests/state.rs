@@ -271,6 +271,16 @@ fn without_slip_t_lies_along_an_axis() {
     assert_eq!(numbers(&contact["v"])[1..], [0.0, 0.0]);
 }
 
+/// So are dimensions that no shape has.
+#[test]
+fn impossible_dimensions_are_said_to_be() {
+    let model = model("../simulation/models/log_on_table");
+    let run = hodograph(&["eval", &model, "--state", "-"], r#"{"parameters":{"a":-1}}"#);
+    assert_eq!(run.error_kind(), "impossible_size");
+    let words = "of `Table` is not positive: with these parameters it is -2 m";
+    assert!(run.stdout.contains(words), "{}", run.stdout);
+}
+
 /// Parameters that no body has are named as the cause, not the state.
 #[test]
 fn impossible_masses_are_said_to_be() {

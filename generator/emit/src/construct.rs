@@ -78,7 +78,7 @@ impl Emitter<'_> {
                 ///
                 /// # Errors
                 ///
-                /// A parameter is not finite, a mass is not positive, no body can have an inertia, or a divisor is zero.
+                /// A parameter is not finite, a mass or a dimension of a shape is not positive, no body can have an inertia, or a divisor is zero.
                 pub fn new(#argument) -> ::core::result::Result<Self, #krate::ParameterError> {
                     Self::check(#borrowed)?;
                     let hoisted = Self::hoist(#borrowed);
@@ -155,7 +155,7 @@ impl Emitter<'_> {
                 }
             }
         });
-        let bodies = self.body_checks();
+        let (bodies, shapes) = (self.body_checks(), self.shape_checks());
         let guards: Vec<_> =
             self.program.guards.iter().filter(|guard| self.guard_stage(guard) == Stage::Parameter).collect();
         let values: Vec<Value> =
@@ -168,6 +168,7 @@ impl Emitter<'_> {
         quote! {
             #(#finite)*
             #bodies
+            #shapes
             #statements
             #(#rounded)*
             #(#guards)*

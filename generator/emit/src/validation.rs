@@ -28,6 +28,20 @@ impl Emitter<'_> {
         quote! { #(#checks)* }
     }
 
+    /// Checks of the dimensions of shapes that depend on parameters alone.
+    pub fn shape_checks(&self) -> TokenStream {
+        let krate = self.krate;
+        let checks = self.mechanism.shapes.iter().flat_map(|shape| {
+            let name = &shape.name;
+            shape.sizes.iter().zip(shape.kind.sizes()).filter_map(move |(size, dimension)| {
+                let varies = !matches!(size, Scalar::Number(_));
+                let size = varies.then(|| self.scalar(size, DEPTH)).flatten()?;
+                Some(quote!(#krate::generated::check_size::<T>(#size, #name, #dimension)?;))
+            })
+        });
+        quote! { #(#checks)* }
+    }
+
     /// The inertia components of a body. Components about another point than the mass centre must be
     /// possible, too.
     fn inertia(&self, body: &Body) -> Option<Vec<TokenStream>> {

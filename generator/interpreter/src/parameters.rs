@@ -1,7 +1,7 @@
 //! Checks parameters, with the same checks in the same order as the constructor of a generated module.
 
 use hodograph::ParameterError;
-use hodograph::generated::{abs, check_inertia, check_mass, exp, log, power, recip, sqrt};
+use hodograph::generated::{abs, check_inertia, check_mass, check_size, exp, log, power, recip, sqrt};
 use hodograph_model::arithmetic::Function;
 use hodograph_model::model::mechanism::{DefinitionValue, Mechanism, Scalar, Variable};
 use hodograph_program::interpret::Constants;
@@ -32,7 +32,7 @@ pub fn constants(
     if constants.finite(program) { Ok(constants) } else { Err(not_finite()) }
 }
 
-/// Checks what the model says of its bodies with these parameters.
+/// Checks what the model says of its bodies and shapes with these parameters.
 ///
 /// # Errors
 ///
@@ -54,6 +54,13 @@ pub fn check(model: &Mechanism, parameters: &[f64]) -> Result<(), ParameterError
         });
         if let Some([Some(xx), Some(yy), Some(zz), Some(xy), Some(yz), Some(zx)]) = components {
             check_inertia([xx, yy, zz, xy, yz, zx], name)?;
+        }
+    }
+    for shape in &model.shapes {
+        for (size, dimension) in shape.sizes.iter().zip(shape.kind.sizes()) {
+            if let Some(size) = scalar(model, parameters, size, DEPTH) {
+                check_size(size, intern(&shape.name), dimension)?;
+            }
         }
     }
     Ok(())

@@ -77,6 +77,22 @@ pub fn check_mass<T: Scalar>(mass: T, body: &'static str) -> Result<(), Paramete
     }
 }
 
+/// Checks a dimension of a shape.
+#[inline(never)]
+pub fn check_size<T: Scalar>(
+    size: T,
+    shape: &'static str,
+    dimension: &'static str,
+) -> Result<(), ParameterError> {
+    if !size.is_finite() {
+        Err(ParameterError::NotFinite { name: shape })
+    } else if size <= T::zero() {
+        Err(ParameterError::Size { shape, dimension })
+    } else {
+        Ok(())
+    }
+}
+
 /// Checks an inertia matrix with components xx, yy, zz, xy, yz, zx about the mass centre: it must be one of a
 /// body, that is `S = (trace / 2) 1 - I`, the second moment of its mass, must be positive semidefinite (up to
 /// rounding). The diagonal of S is a, b, c, its other entries are the opposites of xy, yz, zx.

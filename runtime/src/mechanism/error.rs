@@ -107,6 +107,13 @@ pub enum ParameterError {
         /// The quantity, in the names of the model.
         what: &'static str,
     },
+    /// A dimension of a shape is zero or negative.
+    Size {
+        /// The shape.
+        shape: &'static str,
+        /// The dimension: radius, length or the like.
+        dimension: &'static str,
+    },
     /// The slice of parameters is too long or too short.
     Length {
         /// How many parameters the mechanism has.
@@ -124,6 +131,7 @@ impl ParameterError {
             Self::Mass { .. } => Cause::ImpossibleMass,
             Self::Inertia { .. } => Cause::ImpossibleInertia,
             Self::Singular { .. } => Cause::SingularParameters,
+            Self::Size { .. } => Cause::ImpossibleSize,
             Self::Length { .. } => Cause::WrongLength,
         }
     }
@@ -146,6 +154,7 @@ impl fmt::Display for ParameterError {
                 "no body has the inertia of `{body}`: its moments must not be negative, and none greater than the sum of the others"
             ),
             Self::Singular { what } => write!(out, "the parameters are singular: {what}"),
+            Self::Size { shape, dimension } => write!(out, "the {dimension} of `{shape}` is not positive"),
             Self::Length { expected, found } => {
                 write!(out, "{found} parameters are given: the mechanism has {expected}")
             }

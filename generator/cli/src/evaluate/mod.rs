@@ -7,7 +7,7 @@ pub mod report;
 pub mod tables;
 
 use hodograph::Cause;
-use hodograph_generator::check::{ROUNDED_QUATERNION, UNIT_QUATERNION, impossible_bodies};
+use hodograph_generator::check::{ROUNDED_QUATERNION, UNIT_QUATERNION, impossible_bodies, impossible_sizes};
 use hodograph_generator::diagnostics::codes;
 use hodograph_generator::interpret::{self, Evaluator};
 use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
@@ -173,9 +173,10 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// `impossible_mass`, `impossible_inertia`, `inconsistent_state`, `singular_state`.
+    /// `impossible_mass`, `impossible_inertia`, `impossible_size`, `inconsistent_state`, `singular_state`.
     pub fn complete(&self, mut state: State) -> Result<State, Failure> {
         self.check_bodies(&state)?;
+        self.check_shapes(&state)?;
         self.normalise_quaternions(&mut state)?;
         assembly::assemble(self, &mut state)?;
         assembly::check_loops(self, &state)?;
@@ -199,6 +200,18 @@ impl Machine {
             (Cause::ImpossibleInertia, message)
         };
         Err(Failure::new(Kind::Of(cause), message))
+    }
+
+    /// Checks that every dimension of a shape is positive; the generated constructor refuses the same parameters.
+    fn check_shapes(&self, state: &State) -> Result<(), Failure> {
+        let impossible = impossible_sizes(&self.mechanism, &state.to_numeric());
+        let Some(found) = impossible.first() else { return Ok(()) };
+        let shape = &self.mechanism.shapes[found.shape.0];
+        let (name, dimension) = (&shape.name, shape.kind.sizes().get(found.place).unwrap_or(&"size"));
+        let value = found.value;
+        let message =
+            format!("the {dimension} of `{name}` is not positive: with these parameters it is {value} m");
+        Err(Failure::new(Kind::Of(Cause::ImpossibleSize), message))
     }
 
     /// Normalises quaternions that are rounded, since the equations hold for unit quaternions only. Others

@@ -33,6 +33,7 @@ use crate::span::Span;
 use crate::syntax::{self, lexer, token::Token, tree::Tree};
 
 pub use bodies::{Impossible, impossible_bodies};
+pub use shapes::{ImpossibleSize, impossible_sizes};
 pub use unit_vectors::{ROUNDED_QUATERNION, UNIT_QUATERNION};
 pub use vector_constraints::dependent_components;
 

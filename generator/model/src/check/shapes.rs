@@ -15,9 +15,12 @@ const SLIP: f64 = 1e-9;
 /// What is wrong with shapes, each with the number of the shape.
 pub fn shapes(m: &Mechanism, state: Option<&State>, seen: &[Seen<'_>]) -> Vec<(ShapeId, Diagnostic)> {
     let mut out = Vec::new();
+    let sizes = state.map(|state| impossible_sizes(m, state)).unwrap_or_default();
     for (i, shape) in m.shapes.iter().enumerate() {
-        let found = state
-            .and_then(|state| impossible_size(m, state, shape))
+        let size = sizes.iter().find(|found| found.shape == ShapeId(i));
+        let found = size
+            .and_then(|found| impossible_size(shape, *found))
+            .or_else(|| state.and_then(|state| impossible_density(m, state, shape)))
             .or_else(|| stranger(m, shape, seen))
             .or_else(|| long_axis(m, shape, seen))
             .or_else(|| turning_axis(m, shape, seen));
@@ -82,19 +85,44 @@ fn out_of_plane(
     })
 }
 
-/// A length or density that is not positive with the values of the model.
-fn impossible_size(m: &Mechanism, state: &State, shape: &Shape) -> Option<Diagnostic> {
+/// A dimension of a shape that is not positive with some values of the parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpossibleSize {
+    /// of this shape
+    pub shape: ShapeId,
+    /// its place in [`Kind::sizes`]
+    pub place: usize,
+    /// m
+    pub value: f64,
+}
+
+/// The dimensions of shapes that are not positive with the parameters of a state. What has no value there is
+/// passed over.
+pub fn impossible_sizes(m: &Mechanism, state: &State) -> Vec<ImpossibleSize> {
     let values = at_rest(m, state);
-    let sizes = shape.sizes.iter().zip(&shape.size_spans).zip(shape.kind.sizes());
-    for ((size, span), name) in sizes {
-        let Ok(value) = values.scalar(size, Level::Geometry) else { continue };
-        if value.re <= 0.0 {
-            let message = format!("the {name} of `{}` is {} m", shape.name, number(value.re));
-            let help = "the dimensions of a shape are positive";
-            return Some(Diagnostic::new(codes::SHAPE, *span, message).help(help));
+    let mut found = Vec::new();
+    for (i, shape) in m.shapes.iter().enumerate() {
+        for (place, size) in shape.sizes.iter().enumerate() {
+            let Ok(value) = values.scalar(size, Level::Geometry) else { continue };
+            if value.re <= 0.0 {
+                found.push(ImpossibleSize { shape: ShapeId(i), place, value: value.re });
+            }
         }
     }
-    let density = values.scalar(shape.density.as_ref()?, Level::Geometry).ok()?;
+    found
+}
+
+/// A length that is not positive with the values of the model.
+fn impossible_size(shape: &Shape, found: ImpossibleSize) -> Option<Diagnostic> {
+    let (name, span) = (shape.kind.sizes().get(found.place)?, shape.size_spans.get(found.place)?);
+    let message = format!("the {name} of `{}` is {} m", shape.name, number(found.value));
+    let help = "the dimensions of a shape are positive";
+    Some(Diagnostic::new(codes::SHAPE, *span, message).help(help))
+}
+
+/// A density that is not positive with the values of the model.
+fn impossible_density(m: &Mechanism, state: &State, shape: &Shape) -> Option<Diagnostic> {
+    let density = at_rest(m, state).scalar(shape.density.as_ref()?, Level::Geometry).ok()?;
     (density.re <= 0.0).then(|| {
         let message = format!("the density of `{}` is {} kg/m^3", shape.name, number(density.re));
         Diagnostic::new(codes::SHAPE, shape.span, message).help("the density of a shape is positive")
