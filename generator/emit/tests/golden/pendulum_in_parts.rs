@@ -266,7 +266,7 @@ pub mod pendulum_in_parts {
         ///
         /// # Errors
         ///
-        /// A parameter is not finite, a mass is not positive, no body can have an inertia, or a divisor is zero.
+        /// A parameter is not finite, a mass or a dimension of a shape is not positive, no body can have an inertia, or a divisor is zero.
         pub fn new(
             parameters: Parameters<T>,
         ) -> ::core::result::Result<Self, ::hodograph::ParameterError> {
