@@ -2,8 +2,8 @@
 
 use hodograph::{ComponentKind, Mechanism as _, State};
 use hodograph_gradients::{
-    Adjoint, By, Exchange, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return, Trajectory,
-    differentiate, find_orbit, follow_branch,
+    Adjoint, By, Exchange, Fit, FitError, FitTask, GradientError, Loss, Orbit, OrbitError, Periodic, Return,
+    Trajectory, differentiate, find_orbit, follow_branch,
 };
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, Options};
@@ -148,7 +148,10 @@ pub fn adjoint<'py>(
         let expected = (samples.len(), size);
         return Err(argument(
             py,
-            &format!("the weights have the shape (.., {times}, {own}): expected (.., {}, {})", expected.0, expected.1),
+            &format!(
+                "the weights have the shape (.., {times}, {own}): expected (.., {}, {})",
+                expected.0, expected.1
+            ),
         ));
     }
     let weights = weights.as_array();
@@ -158,7 +161,14 @@ pub fn adjoint<'py>(
             function.outer_iter().map(|row| DVector::from_iterator(size, row.iter().copied())).collect();
         let gradient = found.of_states(&weights).map_err(|why| {
             let contact = contact_of(mechanism, why.contact).map(str::to_owned);
-            errors::error(py, "SimulationError", &why.to_string(), "not_differentiable", contact, Some(why.time))
+            errors::error(
+                py,
+                "SimulationError",
+                &why.to_string(),
+                "not_differentiable",
+                contact,
+                Some(why.time),
+            )
         })?;
         gradients.extend_from_slice(gradient.as_slice());
     }
@@ -271,7 +281,8 @@ pub fn orbit<'py>(
             .map_err(|message| errors::argument(py, "exchange", "unknown_name", &message))
     };
     let symmetry = of.exchange.iter().map(exchanged).collect::<PyResult<Vec<Exchange>>>()?;
-    let periodic = Periodic { returns, reset: of.reset.clone(), symmetry, longest: of.longest, segments: of.segments };
+    let periodic =
+        Periodic { returns, reset: of.reset.clone(), symmetry, longest: of.longest, segments: of.segments };
     let all = PyDict::new(py);
     let Some((name, from, to)) = &of.follow else {
         let by = variables(py, mechanism, &of.by)?;
@@ -358,7 +369,10 @@ pub fn fit<'py>(
             let found = hodograph_gradients::fit_start(mechanism, &options, measured, trajectory, flight);
             let found = found.map_err(failed)?;
             let covariance = matrix(py, &found.covariance)?;
-            starts.set_item(&trajectory.name, (found.trajectory.state.clone(), found.errors, covariance, found.rms))?;
+            starts.set_item(
+                &trajectory.name,
+                (found.trajectory.state.clone(), found.errors, covariance, found.rms),
+            )?;
             *trajectory = found.trajectory;
         }
     }
@@ -379,7 +393,9 @@ pub fn fit<'py>(
             hodograph_gradients::fit(mechanism, &options, &task)
         })
         .map_err(failed)?;
-    let Fit { values, surfaces, rms, differences, errors, correlations, undetermined, spread, minima, .. } = &found;
+    let Fit {
+        values, surfaces, rms, differences, errors, correlations, undetermined, spread, minima, ..
+    } = &found;
     let all = PyDict::new(py);
     all.set_item("starts", starts)?;
     all.set_item("minima", minima.clone())?;
