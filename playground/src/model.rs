@@ -1,6 +1,6 @@
 //! Reads a model, and its derivation where there is one.
 
-use hodograph_model::check::{self, UNIT_QUATERNION, impossible_bodies, impossible_sizes};
+use hodograph_model::check::{self, UNIT_QUATERNION, impossible_bodies};
 use hodograph_model::diagnostics::Severity;
 use hodograph_model::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_model::numeric::start::{self, Given};
@@ -104,10 +104,6 @@ pub fn start(model: &Mechanism, question: &Value) -> Result<State, String> {
     if let Some(found) = impossible_bodies(model, &state).first() {
         let body = &model.bodies[found.body.0].name;
         return Err(format!("with these parameters {body} is no body: {}", found.what));
-    }
-    if let Some(found) = impossible_sizes(model, &state).first() {
-        let shape = &model.shapes[found.shape.0].name;
-        return Err(format!("with these parameters {shape} is no shape: a dimension is {} m", found.value));
     }
     for frame in &model.frames {
         let Orientation::Quaternion(parts) = frame.orientation else { continue };
