@@ -58,8 +58,9 @@ pub(crate) struct Front {
     pub greatest: f64,
     /// the works of impacts so far, J
     pub energy: EnergyAccount,
-    /// number of events without progress in time, and the sum of the numbers of closed contacts at them
+    /// number of events without progress in time
     pub crowd: usize,
+    /// the sum over these events of the number of closed contacts
     pub crowded_contacts: usize,
     /// number of events, and the time from which they are counted, s
     pub events: (usize, f64),

@@ -25,6 +25,7 @@ mod ledge;
 mod logs;
 mod many;
 mod mechanisms;
+mod near_starts;
 mod one_contact;
 mod one_pass;
 mod painleve;

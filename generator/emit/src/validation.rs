@@ -1,4 +1,4 @@
-//! Emits the checks of masses and inertias in the constructor, where they depend on parameters only.
+//! Emits the checks of masses, inertias and dimensions of shapes in the constructor, where they depend on parameters only.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

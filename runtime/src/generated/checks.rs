@@ -77,7 +77,7 @@ pub fn check_mass<T: Scalar>(mass: T, body: &'static str) -> Result<(), Paramete
     }
 }
 
-/// Checks a dimension of a shape.
+/// Checks a dimension of a shape, m.
 #[inline(never)]
 pub fn check_size<T: Scalar>(
     size: T,

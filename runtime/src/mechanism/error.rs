@@ -89,7 +89,7 @@ impl core::error::Error for StateError {}
 pub enum ParameterError {
     /// A parameter, or something computed from parameters, is infinite or not a number.
     NotFinite {
-        /// The parameter or the body.
+        /// The parameter, the body or the shape.
         name: &'static str,
     },
     /// The mass of a body is zero or negative.

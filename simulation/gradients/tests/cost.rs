@@ -8,6 +8,9 @@ use hodograph_simulation::Simulation;
 
 use crate::common::{Task, options, read};
 
+/// Number of runs of two programs in turns.
+const TURNS: usize = 60;
+
 /// The least times of many runs of two programs in turns: what disturbs one disturbs the other.
 fn in_turns(mut one: impl FnMut(), mut other: impl FnMut()) -> [Duration; 2] {
     let timed = |run: &mut dyn FnMut()| {
@@ -18,9 +21,6 @@ fn in_turns(mut one: impl FnMut(), mut other: impl FnMut()) -> [Duration; 2] {
     let turns = (0..TURNS).map(|_| [timed(&mut one), timed(&mut other)]);
     turns.reduce(|[a, b], [c, d]| [a.min(c), b.min(d)]).unwrap()
 }
-
-/// Number of those runs.
-const TURNS: usize = 60;
 
 /// The least time of several runs.
 fn least(mut run: impl FnMut()) -> Duration {

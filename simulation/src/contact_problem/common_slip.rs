@@ -102,8 +102,9 @@ impl<'a> CommonMotion<'a> {
         (!kept.is_empty()).then_some(Self { open, held, rows, basis })
     }
 
-    /// The common motion along the present directions, and whether slip grows (1) or decreases (-1). Where they leave
-    /// it open how fast each contact is, and where slip begins, all are equally fast.
+    /// The first common motion, and whether slip grows (1) or decreases (-1). Directions of slip that exists are those of a
+    /// motion: of the motions along them it is the one with the most equal speeds. Directions in which slip begins are only
+    /// near those of a motion: then it is the one nearest to equal speeds.
     fn start(
         &self,
         problem: &Problem<'_>,
@@ -121,11 +122,10 @@ impl<'a> CommonMotion<'a> {
                 across.row_mut(j).copy_from(&turned);
             }
         }
-        // The motion nearest to equal velocities of all contacts, of those along their directions.
+        // Velocities across the directions cost 1 / EQUAL times as much as differences of speeds.
         let equal = DMatrix::identity(r, r) * EQUAL;
         let near = (&equal + across.tr_mul(&across)).cholesky()?;
         let all = self.basis.tr_mul(&along);
-        // Directions in which slip begins are only near those of a motion.
         let y = if begins { all } else { near.solve(&(equal * all)) };
         let motion = &self.basis * &y;
         let rate: f64 = self

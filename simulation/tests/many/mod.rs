@@ -170,3 +170,13 @@ impl Ended {
         self.events.iter().filter_map(change).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
+
+/// The starts: the usual ones, or what `HODOGRAPH_DROPS` says, a number of them or a range.
+pub fn drops(usual: impl IntoIterator<Item = u64>) -> Vec<u64> {
+    let text = std::env::var("HODOGRAPH_DROPS").unwrap_or_default();
+    let (from, to) = text.split_once("..").unwrap_or(("0", &text));
+    match (from.parse::<u64>(), to.parse::<u64>()) {
+        (Ok(from), Ok(to)) => (from..to).collect(),
+        _ => usual.into_iter().collect(),
+    }
+}
