@@ -96,6 +96,8 @@ const CASES: &[Case] = &[
         &["E023 10:52"]),
     ("d_snake_contacts", &[(17, "contacts { tipWall { point: P of Arm, normal: -N.x, gap: none }, tip_wall { point: P of Arm, normal: -N.x, gap: none } }")],
         &["E023 18:66"]),
+    ("d_derivative_of_a_contact", &[(17, "contacts { tip { point: P of Arm, normal: -N.x, gap: none }, tip_derivative { point: P of Arm, normal: -N.x, gap: none } }")],
+        &["E023 18:62"]),
     ("d_self_names", &[(1, "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, self: 1 = 3 }")],
         &["E022 2:54"]),
     ("e_len", &[(9, "points { G = O - l/2*B.y; P = O - l*2^l*B.y; }")],

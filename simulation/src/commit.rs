@@ -20,6 +20,7 @@ impl Transition<'_> {
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
         self.correct()?;
+        self.drive_smoothly()?;
         step.corrected(&self.front.y);
         self.arm(step)?;
         let n = self.mechanism.count(ComponentKind::Coordinate);
@@ -56,17 +57,18 @@ impl Transition<'_> {
         let p = self.mechanism.count(ComponentKind::Speed);
         let closed: Vec<(usize, bool)> =
             modes.closed.iter().map(|closed| (closed.contact, closed.slides.is_none())).collect();
+        let motion = Motion { held: &modes.held, ..self.motion(&modes.closed) };
+        let inputs = motion.inputs(t, y).map_err(|failure| self.failure(failure))?;
         let mut q = y[..n].to_vec();
         let mut u = y[n..n + p].to_vec();
         let moved = (|| {
-            drift::close_loops(self.mechanism.mechanism, t, &mut q, &u, &modes.held)?;
+            drift::close_loops(self.mechanism.mechanism, t, &mut q, &u, &inputs)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
             let least = SIZE * self.front.scales.length;
-            let (left, known) =
-                drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts, least)?;
+            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &inputs, &contacts, least)?;
             // Velocities are projected last, at the corrected positions, since a remaining normal velocity
             // would count as an approach.
-            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, (&closed, known))?;
+            drift::hold_velocities(self.mechanism, t, &q, &mut u, &inputs, (&closed, known))?;
             Ok(left)
         })();
         if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {

@@ -478,7 +478,8 @@ impl Transition<'_> {
     fn gap_in(&self, time: f64, y: &[f64], contact: usize) -> Result<(f64, f64), SimulationError> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(y);
-        let state = State { time, coordinates: q, speeds: u, inputs: &self.front.held };
+        let inputs = motion.inputs(time, y).map_err(|failure| self.failure(failure))?;
+        let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
         let fault = |error| self.failure(Failure::State(error));
         let gap = self.mechanism.gap(contact, &state).map_err(fault)?.unwrap_or(1.0);
         Ok((gap, self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x))

@@ -48,6 +48,7 @@ impl Transition<'_> {
         };
         self.front.resting = false;
         self.front.y[n..n + p].copy_from_slice(&after);
+        self.drive()?;
         self.front.energy.impacts += outcome.energy_change;
         let struck = CollisionRecord { outcome, speeds_before: before, last_bounce: false, spread: None };
         self.push(Some(contact), EventKind::ImpactWithoutCollision(Box::new(struck)));
@@ -126,7 +127,7 @@ impl Transition<'_> {
     fn strike_jam(&mut self, hit: Hit, was: &[Phase]) -> Result<(), SimulationError> {
         self.front.resting = false;
         let after = hit.after.clone();
-        self.take_impact(hit, None);
+        self.take_impact(hit, None)?;
         let touching = self.touching(None)?;
         match self.approaching(&touching, &after, Some(1.0))?.first() {
             Some(&(other, _)) => self.strike(other),

@@ -62,15 +62,16 @@ impl Transition<'_> {
         let mut last = speeds;
         for (place, hit) in hits.into_iter().enumerate() {
             last.clone_from(&hit.after);
-            self.take_impact(hit, if place == 0 { spread } else { None });
+            self.take_impact(hit, if place == 0 { spread } else { None })?;
         }
         self.part_or_stay(&touching, &last, &was)
     }
 
     /// Applies an impact: speeds, energies, bounces that end, and the event.
-    pub(crate) fn take_impact(&mut self, hit: Hit, spread: Option<f64>) {
+    pub(crate) fn take_impact(&mut self, hit: Hit, spread: Option<f64>) -> Result<(), SimulationError> {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         self.front.y[n..n + hit.after.len()].copy_from_slice(&hit.after);
+        self.drive()?;
         self.front.energy.impacts += hit.energy_change();
         for &(contact, time) in &hit.bounces {
             self.front.chatter.retain(|(_, other)| *other != contact);
@@ -89,6 +90,7 @@ impl Transition<'_> {
                 self.push(None, EventKind::SimultaneousCollision(Box::new(struck)));
             }
         }
+        Ok(())
     }
 
     /// After impacts: separating contacts are open, and the modes of the others are decided.

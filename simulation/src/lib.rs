@@ -38,6 +38,7 @@ mod contact_law;
 pub mod contact_problem;
 mod drift;
 mod drive;
+mod driven_inputs;
 mod ends;
 mod energy;
 mod error;
@@ -104,6 +105,7 @@ pub use crate::{
     many::{Batch, Case, Outcome, StopAt, Watch, digest, simulate_many},
     options::{EventFunction, ImpactsAtOnce, Options},
     outcome_set::{End, OutcomeSet, Range},
+    pair::MOST_FRICTION,
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},
     smooth_parts::{ClosedPart, Guard, SmoothPart},

@@ -120,6 +120,9 @@ impl Pair {
     }
 }
 
+/// Coefficients of friction are at most this: the cones of friction are solved with their squares.
+pub const MOST_FRICTION: f64 = 1e100;
+
 impl Pair {
     /// Checks the law.
     ///
@@ -132,6 +135,18 @@ impl Pair {
             let good = value.is_finite() && value > 0.0;
             if good { Ok(()) } else { Err(format!("{what} is {value}: it must be finite and positive")) }
         };
+        let mus = [
+            ("friction", Some(surface.mu)),
+            ("static friction", law.mu_static),
+            ("friction in impacts", law.mu_impact),
+        ];
+        if let Some((what, mu)) =
+            mus.iter().find_map(|&(what, mu)| Some((what, mu.filter(|mu| *mu > MOST_FRICTION)?)))
+        {
+            return Err(format!(
+                "the coefficient of {what} is {mu:e}: forces whose squares are numbers need at most {MOST_FRICTION:e}, and 1e6 holds as well"
+            ));
+        }
         for (what, value) in [("static friction", law.mu_static), ("friction in impacts", law.mu_impact)] {
             if let Some(mu) = value.filter(|mu| !(mu.is_finite() && *mu >= 0.0)) {
                 return Err(format!("the coefficient of {what} is {mu}: it must be finite and not negative"));

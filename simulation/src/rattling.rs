@@ -81,6 +81,7 @@ impl Transition<'_> {
         let kinetic = self.kinetic()?;
         let hit = self.plastic_impact(near, &self.front.y[n..n + p])?;
         self.front.y[n..n + p].copy_from_slice(&hit.after);
+        self.drive()?;
         for &contact in near {
             // Contacts that stuck may slip after the impact.
             self.front.phases[contact] = Phase::Open(Leaving::NOW);

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::angles::Angles;
 use crate::check::check;
 use crate::front::Front;
-use crate::motion::Failure;
+use crate::motion::{Failure, WORKS};
 use crate::pair::Pair;
 use crate::phase::{ContactPhase, Modes};
 use crate::scales::Scales;
@@ -44,6 +44,8 @@ pub struct Simulation<'m> {
     pub(crate) failed: Option<SimulationError>,
     /// the smooth parts, if they are recorded
     parts: Option<Parts>,
+    /// the works of impacts before those at the end of the last steps, J
+    impacts_before: f64,
 }
 
 impl std::fmt::Debug for Simulation<'_> {
@@ -95,6 +97,15 @@ impl<'m> Simulation<'m> {
         })?;
         // A torque has no gap.
         surfaces.resize(surfaces.len() + torques.len(), None);
+        // Lengths and speeds of the problem are those with the inputs that there are.
+        let mut inputs = state.inputs.to_vec();
+        if let Drive::Continuous(function) = &options.drive {
+            function(state.time, state.coordinates, state.speeds, &mut inputs);
+            if inputs.iter().any(|input| !input.is_finite()) {
+                inputs.copy_from_slice(state.inputs);
+            }
+        }
+        let state = &State { inputs: &inputs, ..*state };
         let sampled = matches!(options.drive, Drive::Sampled { .. } | Drive::Table(_));
         let angles = Angles::of(mechanism);
         let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, &angles, state));
@@ -113,6 +124,7 @@ impl<'m> Simulation<'m> {
             view,
             failed: None,
             parts: None,
+            impacts_before: 0.0,
         };
         // The inputs of the first sample determine the modes of the contacts at the start.
         let inputs = simulation.sampled_inputs()?;
@@ -162,14 +174,15 @@ impl<'m> Simulation<'m> {
         if let Err(error) = done {
             if let Some(front) = reached {
                 steps.retain(|(step, _)| step.t + step.h <= front.t);
+                self.impacts_before = self.front.energy.impacts;
                 (self.front, self.steps) = (front, steps);
             }
             return Err(error);
         }
-        self.front = front;
+        let impacts = std::mem::replace(&mut self.front, front).energy.impacts;
         self.queue.extend(events);
         if !steps.is_empty() {
-            self.steps = steps;
+            (self.steps, self.impacts_before) = (steps, impacts);
         }
         Ok(())
     }
@@ -235,7 +248,7 @@ impl<'m> Simulation<'m> {
             {
                 let mut y = event.coordinates.clone();
                 y.extend_from_slice(&event.speeds);
-                y.resize(self.front.y.len(), 0.0);
+                y.extend_from_slice(&self.works_at(event.time));
                 self.view = (event.time, y);
                 return Ok(Progress::Event(event));
             }
@@ -278,6 +291,15 @@ impl<'m> Simulation<'m> {
     /// The step in which a time before the front lies, and its modes.
     fn step_at(&self, time: f64) -> Option<&(Step, Modes)> {
         self.steps.iter().rfind(|(step, _)| step.t <= time).or(self.steps.first())
+    }
+
+    /// The works of friction and of inputs up to a time in the last steps.
+    fn works_at(&self, time: f64) -> [f64; WORKS] {
+        let of = |y: &[f64]| std::array::from_fn(|work| y[y.len() - WORKS + work]);
+        match self.step_at(time) {
+            Some((step, _)) if time < self.front.t && step.h > 0.0 => of(&step.at((time - step.t) / step.h)),
+            _ => of(&self.front.y),
+        }
     }
 
     /// Evaluates the state at a time in the last steps.
@@ -430,22 +452,33 @@ impl<'m> Simulation<'m> {
         Ok((forces, unique))
     }
 
-    /// The energy account since the start, at the end of the last step.
+    /// The energy account from the start to [`Simulation::time`], with the impacts at that time.
     ///
     /// # Errors
     ///
     /// The mechanism cannot be evaluated.
     pub fn energy(&self) -> Result<EnergyAccount, SimulationError> {
-        let transition = self.transition();
-        let state = transition.here();
-        let works = &self.front.y[state.coordinates.len() + state.speeds.len()..];
+        let mut transition = self.transition();
+        let (time, y) = &self.view;
+        let mut impacts = self.front.energy.impacts;
+        if *time < self.front.t {
+            impacts = self.impacts_before;
+            if let Some((_, modes)) = self.step_at(*time) {
+                transition.front.held.clone_from(&modes.held);
+            }
+        }
+        let motion = transition.motion(&[]);
+        let (coordinates, speeds) = motion.split(y);
+        let inputs = motion.inputs(*time, y).map_err(|failure| transition.failure(failure))?;
+        let state = State { time: *time, coordinates, speeds, inputs: &inputs };
+        let works = &y[coordinates.len() + speeds.len()..];
         let fault = |error| transition.failure(Failure::State(error));
         Ok(EnergyAccount {
             kinetic: self.mechanism.kinetic_energy(&state).map_err(fault)?,
             potential: self.mechanism.potential_energy(&state).map_err(fault)?,
             friction: works[0],
             inputs: works[1],
-            ..self.front.energy
+            impacts,
         })
     }
 

@@ -81,6 +81,7 @@ impl Transition<'_> {
         let energy_change = self.energy_change(&speeds, &after)?;
         self.front.energy.impacts += energy_change;
         self.front.y[n..n + p].copy_from_slice(&after);
+        self.drive()?;
         let struck = SimultaneousCollision { shares, energy_change, speeds_before: speeds, spread: None };
         self.push(None, EventKind::SimultaneousCollision(Box::new(struck)));
         Ok(Some(after))

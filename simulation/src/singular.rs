@@ -115,6 +115,7 @@ impl Transition<'_> {
         let modes = self.modes();
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
+        self.drive()?;
         self.steps.push((step.clone(), modes));
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let mut q = self.front.y[..n].to_vec();

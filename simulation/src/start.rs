@@ -15,6 +15,7 @@ const CLOSED: f64 = 5e-15;
 impl Transition<'_> {
     /// Contacts at the start.
     pub(crate) fn begin(&mut self) -> Result<(), SimulationError> {
+        self.drive()?;
         let front = self.front.clone();
         let state = self.here_of(&front);
         let overlap = OVERLAP * self.front.scales.length;

@@ -13,6 +13,7 @@ mod contact_problem;
 mod controller;
 mod crates;
 mod discs;
+mod driven;
 mod edges;
 mod energy_under_poisson;
 mod exact;

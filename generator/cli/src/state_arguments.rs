@@ -161,3 +161,16 @@ fn read(place: &str) -> Outcome<String> {
         Failure::bad_json(format!("the state is not UTF-8 at byte {at}")).into()
     })
 }
+
+/// Refuses a name that an option gives twice.
+///
+/// # Errors
+///
+/// [`Stop::Call`] with the name.
+pub fn once(option: &str, names: &[&str]) -> Outcome {
+    let twice = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name));
+    match twice {
+        Some((_, name)) => Err(Stop::Call(format!("{option}: {name} is given twice: leave one out"))),
+        None => Ok(()),
+    }
+}

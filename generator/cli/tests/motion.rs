@@ -264,6 +264,33 @@ fn balls_answer_by_their_stiffnesses() {
     }
 }
 
+/// A commanded speed is that of its time: at a collision, in `u_after`, and in the energies at the end, which are those of
+/// the last state that is told.
+#[test]
+fn driven_speeds_are_those_of_their_time() {
+    let cart = root().join("simulation/tests/models/driven_cart.mech");
+    let call = ["simulate", cart.to_str().unwrap(), "--until", "1", "--step", "1", "--input", "s=1+0.5*t"];
+    let json = hodograph(&[&call[..], &["--format", "json"]].concat(), "");
+    assert_eq!(json.code, 0, "{}", json.stderr);
+    let lines = json.lines();
+    let hit = lines.iter().find(|line| line["event"] == "collision").unwrap();
+    let commanded = 2.0_f64.sqrt();
+    let after = |name: &str| number(&hit["u_after"][name]);
+    assert!((after("U") - commanded).abs() < 1e-11, "{hit}");
+    assert!((after("u") - 1.5 * commanded).abs() < 1e-11 && after("W") == 0.0, "{hit}");
+    let end = &lines.last().unwrap()["u"];
+    let [u, w] = ["u", "w"].map(|name| number(&end[name]));
+    let kinetic = 0.5 * (2.0 * u * u + 5.0 * 1.5 * 1.5 + 0.16 * w * w);
+    let table = hodograph(&[&call[..], &["--format", "table"]].concat(), "");
+    let row = table.stdout.lines().find(|line| line.contains("kinetic")).unwrap();
+    let told: Vec<f64> = row.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    assert!(told.iter().any(|told| (told - kinetic).abs() < 1e-5 * kinetic), "{kinetic} {row}");
+    let stuck = hodograph(&[&call[..6], &["--input", "s=1", "--input", "r=0.1*t"]].concat(), "");
+    assert!(stuck.code == 1 && stuck.stderr.contains("the input r is part of the velocity"), "{}", stuck.stderr);
+    let grips = hodograph(&[&call[..6], &["--mu", "1e155", "--e", "0", "--law", "newton"]].concat(), "");
+    assert!(grips.code != 0 && grips.stderr.contains("at most 1e100"), "{}", grips.stderr);
+}
+
 /// A word that is not understood, or stands there twice, is refused with its place; what a table says is what
 /// an expression says.
 #[test]

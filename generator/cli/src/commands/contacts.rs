@@ -6,6 +6,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, IsTerminal};
 use std::path::PathBuf;
 
+use hodograph_simulation::MOST_FRICTION;
 use hodograph_simulation::contact_problem::{
     MOST_ENUMERATED, Problem, Solution, Solutions, Unsolved, enumerate, natural_residual, solve,
 };
@@ -155,6 +156,12 @@ impl Given {
                 Kind::Of(Cause::NegativeFriction),
                 format!("`mu[{i}]` is {}: friction cannot be negative", mu[i]),
             ));
+        }
+        if let Some(i) = (0..k).find(|&i| mu[i] > MOST_FRICTION) {
+            return Err(Failure::bad_json(format!(
+                "`mu[{i}]` is {:e}: its square must be a number, so that at most {MOST_FRICTION:e} is taken; 1e6 holds as well",
+                mu[i]
+            )));
         }
         let q = DVector::from_vec(list(fields, "q", 3 * k, "n, t, s of each contact")?);
         let blocks = array(fields.need("w", FORM)?, "w", FORM)?;

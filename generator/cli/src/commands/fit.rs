@@ -16,6 +16,7 @@ use super::motion_arguments::MotionArguments;
 use crate::evaluate::report::{Named, named};
 use crate::expression;
 use crate::json::{Failure, Kind};
+use crate::state_arguments::once;
 use crate::stop::{Outcome, Stop};
 use crate::table::{Table, number};
 
@@ -79,6 +80,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     let names: Vec<&str> = arguments.parameters.iter().map(|name| name.trim()).collect();
+    once("--parameters", &names)?;
+    once("--outputs", &arguments.outputs.iter().map(|name| name.trim()).collect::<Vec<_>>())?;
     arguments.motion.form.write(
         || {
             let state = arguments.motion.state.state(&machine)?;

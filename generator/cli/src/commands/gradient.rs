@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::motion_arguments::MotionArguments;
 use crate::evaluate::report::{Named, named};
 use crate::json::{Failure, Kind};
+use crate::state_arguments::once;
 use crate::stop::{Outcome, Stop};
 use crate::table::{Table, number};
 
@@ -45,7 +46,8 @@ pub struct Arguments {
 /// An error object for mistakes in the state, the names or the times, and for a motion that fails.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
-    let by = arguments.by.iter().map(|name| name.trim()).collect();
+    let by: Vec<&str> = arguments.by.iter().map(|name| name.trim()).collect();
+    once("--by", &by)?;
     let names = Names { model: &machine.mechanism, by };
     arguments.motion.form.write(
         || {

@@ -285,7 +285,7 @@ impl Watch<Stop> for Writer<'_, '_, '_> {
     }
 
     fn event(&mut self, event: &Event, simulation: &Simulation<'_>) -> Outcome {
-        self.lines.event(event)?;
+        self.lines.event(event, simulation.inputs())?;
         self.pictures.event(event, simulation);
         self.show(event.time);
         Ok(())

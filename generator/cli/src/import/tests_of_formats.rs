@@ -87,6 +87,7 @@ fn elements_of_mjcf_without_counterpart_are_reported() {
         (joint("damping=\"-1\""), "`damping` is negative"),
         (joint("class=\"soft\""), "there is no <default class=\"soft\">"),
         (joint("type=\"screw\""), "`type` is `hinge`, `slide`, `ball` or `free`"),
+        (arm("type=\"box\"", "type=\"box\" mass=\"-1\""), "`mass` is negative"),
         (arm("0 2 0", "0 0 0"), "its axis has length 0"),
         (arm("0 2 0", "0 2"), "`axis` has 2 numbers, not 3"),
         (arm("0 2 0", "0 nan 0"), "`axis=\"0 nan 0\"`: write finite numbers"),

@@ -177,7 +177,7 @@ impl Names {
         ];
         for (kind, list) in kinds {
             let mut seen: HashMap<String, &Name> = HashMap::new();
-            for name in list {
+            for name in &list {
                 let rust = snake_case(&name.text);
                 match seen.get(&rust) {
                     Some(first) if first.text != name.text => diagnostics.push(
@@ -193,6 +193,24 @@ impl Names {
                     None => {
                         seen.insert(rust, name);
                     }
+                }
+            }
+            // `collide_tip` has its derivative beside it.
+            for name in list.iter().filter(|_| kind == "contact") {
+                let rust = snake_case(&name.text);
+                if let Some(first) = rust.strip_suffix("_derivative").and_then(|of| seen.get(of)) {
+                    diagnostics.push(
+                        Diagnostic::new(
+                            codes::COLLISION,
+                            name.span,
+                            format!(
+                                "`collide_{rust}` would be both the collision of `{}` and the derivative of that of `{}` in Rust",
+                                name.text, first.text
+                            ),
+                        )
+                        .related(first.span, "the other contact")
+                        .help("let its name end otherwise"),
+                    );
                 }
             }
         }

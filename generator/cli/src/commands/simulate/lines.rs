@@ -165,7 +165,7 @@ impl<'m> Lines<'m> {
     /// # Errors
     ///
     /// As [`output::text`].
-    pub fn event(&mut self, event: &Event) -> Outcome {
+    pub fn event(&mut self, event: &Event, inputs: &[f64]) -> Outcome {
         let name = |contact| {
             self.mechanism.component(ComponentKind::Contact, contact).map(|component| component.name)
         };
@@ -181,12 +181,12 @@ impl<'m> Lines<'m> {
                 return self.row(event.time, kind, contact, &event.coordinates, &event.speeds);
             }
         }
-        let line = self.object(event, contact)?;
+        let line = self.object(event, inputs, contact)?;
         self.write(&line)
     }
 
     /// An event as JSON.
-    fn object(&self, event: &Event, contact: Option<&str>) -> Outcome<String> {
+    fn object(&self, event: &Event, inputs: &[f64], contact: Option<&str>) -> Outcome<String> {
         let mut line = Line {
             t: event.time,
             event: event.kind.name(),
@@ -211,9 +211,9 @@ impl<'m> Lines<'m> {
         };
         match &event.kind {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
-                self.collision(event, struck, &mut line)?;
+                self.collision(event, struck, inputs, &mut line)?;
             }
-            EventKind::SimultaneousCollision(struck) => self.simultaneous(event, struck, &mut line),
+            EventKind::SimultaneousCollision(struck) => self.simultaneous(event, struck, inputs, &mut line),
             EventKind::Contact { mode, selection } => {
                 certain(selection);
                 line.mode = Some(mode.name());
@@ -240,10 +240,11 @@ impl<'m> Lines<'m> {
         &'a self,
         event: &'a Event,
         struck: &'a CollisionRecord,
+        inputs: &[f64],
         line: &mut Line<'a>,
     ) -> Outcome {
         line.answer = Some(Answer::try_from(&struck.outcome.impact)?);
-        line.u_after = Some(self.after(event));
+        line.u_after = Some(self.after(event, inputs));
         line.kinetic_energy_change = Some(struck.outcome.energy_change + 0.0);
         line.last_bounce = struck.last_bounce.then_some(true);
         line.spread = struck.spread;
@@ -252,7 +253,13 @@ impl<'m> Lines<'m> {
     }
 
     /// The fields of a simultaneous impact, and the speeds before as `u`.
-    fn simultaneous<'a>(&'a self, event: &'a Event, struck: &'a SimultaneousCollision, line: &mut Line<'a>) {
+    fn simultaneous<'a>(
+        &'a self,
+        event: &'a Event,
+        struck: &'a SimultaneousCollision,
+        inputs: &[f64],
+        line: &mut Line<'a>,
+    ) {
         let shares = struck.shares.iter().map(|share| ShareOf {
             contact: self
                 .mechanism
@@ -264,22 +271,18 @@ impl<'m> Lines<'m> {
             work: share.work + 0.0,
         });
         line.shares = Some(shares.collect());
-        line.u_after = Some(self.after(event));
+        line.u_after = Some(self.after(event, inputs));
         line.kinetic_energy_change = Some(struck.energy_change + 0.0);
         line.spread = struck.spread;
         line.u = self.speeds(&struck.speeds_before);
     }
 
-    /// All speeds after an event.
-    fn after(&self, event: &Event) -> Named<'_, f64> {
+    /// All speeds after an event, at which the inputs have these values.
+    fn after(&self, event: &Event, inputs: &[f64]) -> Named<'_, f64> {
         let mut after = event.speeds.clone();
         let mut dependent = vec![0.0; self.mechanism.count(ComponentKind::DependentSpeed)];
-        let state = State {
-            time: event.time,
-            coordinates: &event.coordinates,
-            speeds: &event.speeds,
-            inputs: &vec![0.0; self.mechanism.count(ComponentKind::Input)],
-        };
+        let state =
+            State { time: event.time, coordinates: &event.coordinates, speeds: &event.speeds, inputs };
         if self.mechanism.dependent_speeds(&state, &mut dependent).is_ok() {
             after.extend(dependent);
         }

@@ -27,6 +27,9 @@ impl Reader<'_> {
         let ends = element.numbers::<6>("fromto")?;
         let size = element.list("size")?.unwrap_or_default();
         let (mass, density) = (element.numbers::<1>("mass")?, element.amount("density", 1000.0)?);
+        if mass.is_some_and(|[mass]| mass < 0.0) {
+            return Err(element.wrong("`mass` is negative"));
+        }
         if !element.is_or_lacks("shellinertia", "false") {
             return Err(element.wrong("the inertia of a shell is not imported: state an <inertial>"));
         }
