@@ -286,7 +286,11 @@ fn driven_speeds_are_those_of_their_time() {
     let told: Vec<f64> = row.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     assert!(told.iter().any(|told| (told - kinetic).abs() < 1e-5 * kinetic), "{kinetic} {row}");
     let stuck = hodograph(&[&call[..6], &["--input", "s=1", "--input", "r=0.1*t"]].concat(), "");
-    assert!(stuck.code == 1 && stuck.stderr.contains("the input r is part of the velocity"), "{}", stuck.stderr);
+    assert!(
+        stuck.code == 1 && stuck.stderr.contains("the input r is part of the velocity"),
+        "{}",
+        stuck.stderr
+    );
     let grips = hodograph(&[&call[..6], &["--mu", "1e155", "--e", "0", "--law", "newton"]].concat(), "");
     assert!(grips.code != 0 && grips.stderr.contains("at most 1e100"), "{}", grips.stderr);
 }
