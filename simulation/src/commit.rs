@@ -19,8 +19,9 @@ impl Transition<'_> {
         let modes = self.modes();
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
+        self.drive_smoothly(step.h)?;
         self.correct()?;
-        self.drive_smoothly()?;
+        self.drive()?;
         step.corrected(&self.front.y);
         self.arm(step)?;
         let n = self.mechanism.count(ComponentKind::Coordinate);

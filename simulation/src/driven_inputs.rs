@@ -10,6 +10,11 @@ use crate::phase::Phase;
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
+/// A gap has another rate than the velocity of its contact if what remains of it is this part of what an input changed, and
+/// this many times its rounding and the tolerance.
+const OTHER: f64 = 1e-3;
+const MANY: f64 = 100.0;
+
 /// A difference of velocities or momenta that is this part of their size is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -23,11 +28,43 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// Like [`Self::drive`], at the end of a step in which inputs changed smoothly. The equations hold no rates of inputs:
-    /// an input that stands in velocities may change while it accelerates nothing, and is an error else.
-    pub(crate) fn drive_smoothly(&mut self) -> Result<(), SimulationError> {
+    /// Like [`Self::drive`], at the end of a step of this length that was not corrected yet, in which inputs changed
+    /// smoothly. Refuses changes whose consequences the equations do not hold.
+    pub(crate) fn drive_smoothly(&mut self, h: f64) -> Result<(), SimulationError> {
         let before = self.front.held.clone();
         self.drive()?;
+        if before != self.front.held {
+            self.refuse_rates(&before)?;
+            self.refuse_gaps(&before, h)?;
+        }
+        Ok(())
+    }
+
+    /// A gap that follows an input must have the rate that the velocity of its contact says, which has kept it closed in a
+    /// step of this length from these inputs.
+    fn refuse_gaps(&self, before: &[f64], h: f64) -> Result<(), SimulationError> {
+        let fault = |error| self.failure(Failure::State(error));
+        let here = self.here();
+        for contact in (0..self.front.phases.len()).filter(|&contact| self.front.phases[contact].is_closed())
+        {
+            if self.mechanism.torque(contact).is_some() {
+                continue;
+            }
+            let gap = |inputs| self.mechanism.gap(contact, &State { inputs, ..here });
+            let (old, new) = (gap(before).map_err(fault)?, gap(here.inputs).map_err(fault)?);
+            let (Some(old), Some(new)) = (old, new) else { continue };
+            let error = self.options.relative_tolerance * self.front.scales.length;
+            let drift = MANY * self.rounding_of_gap(contact).max(error);
+            if old != new && new.abs() > drift && new.abs() > OTHER * (new - old).abs() {
+                return Err(self.error(Some(contact), ErrorKind::GapRate { rate: new / h, velocity: 0.0 }));
+            }
+        }
+        Ok(())
+    }
+
+    /// The equations hold no rates of inputs: one that stands in velocities may change from these values as long as that
+    /// accelerates nothing.
+    fn refuse_rates(&self, before: &[f64]) -> Result<(), SimulationError> {
         for (index, &value) in
             before.iter().enumerate().filter(|(index, value)| self.front.held[*index] != **value)
         {
@@ -77,20 +114,22 @@ impl Transition<'_> {
         if still[0] == still[1] && energy(here.speeds, old)? == energy(here.speeds, here.inputs)? {
             return Ok(false);
         }
-        let unit = self.front.scale.iter().fold(0.0_f64, |size, speed| size.max(*speed)).max(1e-3);
+        // Differences of a quadratic function are exact for any unit; the greatest speed so far keeps its terms alike.
+        let greatest = self.front.scale.iter().fold(0.0_f64, |size, speed| size.max(*speed));
+        let unit = if greatest > 0.0 { greatest } else { 1.0 };
         for r in 0..speeds.len() {
-            let mut twice = [0.0; 2];
+            let mut momentum = [0.0; 2];
             let mut size = still[0].abs() + still[1].abs();
-            for (twice, inputs) in twice.iter_mut().zip([old, here.inputs]) {
+            for (momentum, inputs) in momentum.iter_mut().zip([old, here.inputs]) {
                 speeds[r] = unit;
                 let forward = energy(&speeds, inputs)?;
                 speeds[r] = -unit;
                 let backward = energy(&speeds, inputs)?;
                 speeds[r] = 0.0;
-                *twice = forward - backward;
+                *momentum = forward - backward;
                 size += forward.abs() + backward.abs();
             }
-            if (twice[1] - twice[0]).abs() > ROUNDING * size {
+            if (momentum[1] - momentum[0]).abs() > ROUNDING * size {
                 return Ok(true);
             }
         }

@@ -135,7 +135,7 @@ impl Transition<'_> {
     }
 
     /// A bound of the rounding error of a gap, m.
-    fn rounding_of_gap(&self, contact: usize) -> f64 {
+    pub(crate) fn rounding_of_gap(&self, contact: usize) -> f64 {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let size =
             self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));

@@ -5,6 +5,9 @@ use hodograph::Surface;
 
 use crate::contact_law::{ContactLaw, Restitution, Sliding};
 
+/// The greatest coefficient of friction: the cones of friction are solved with squares of it and of the forces.
+pub const MOST_FRICTION: f64 = 1e100;
+
 /// The surfaces of a contact: its coefficients and its law.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair {
@@ -119,9 +122,6 @@ impl Pair {
         Some(2.0 * sum / pull)
     }
 }
-
-/// Coefficients of friction are at most this: the cones of friction are solved with their squares.
-pub const MOST_FRICTION: f64 = 1e100;
 
 impl Pair {
     /// Checks the law.

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use crate::common::{first, names, run};
 use driven_belt::DrivenBelt;
 use driven_cart::DrivenCart;
+use driven_lift::DrivenLift;
 use hodograph::{ComponentKind, Contacts, State};
 use hodograph_simulation::{Drive, ErrorKind, EventKind, Options, Progress, Simulation, SimulationError};
 
 hodograph::mechanism!("tests/models/driven_belt.mech");
 hodograph::mechanism!("tests/models/driven_cart.mech");
+hodograph::mechanism!("tests/models/driven_lift.mech");
 
 const G: f64 = 9.81;
 /// The belt: friction and stiffness per mass, 1/s^2 and m/s^2.
@@ -142,4 +144,30 @@ fn energies_are_those_of_the_time_that_is_asked_for() {
         let slip = 0.5 * time - x;
         assert!((energy.friction + MU * 2.0 * G * slip).abs() < 1e-12, "{time}: {}", energy.friction);
     }
+}
+
+/// A particle falls on a lift that rises at 0.1 m/s, and rises with it. Without its velocity the lift would rise into the
+/// particle, and where its speed changes, the force on the particle is not known: errors.
+#[test]
+fn a_particle_rises_with_a_lift() {
+    let lift = DrivenLift::default();
+    let mut simulation = begin(&lift, &[0.0, 0.0], driven(|t| [0.1 * t, 0.1]));
+    let events = run(&mut simulation, 1.0);
+    // 0.5 - g t^2 / 2 = 0.1 t
+    let time = ((0.01 + 2.0 * G * 0.5_f64).sqrt() - 0.1) / G;
+    assert!((first(&events, "collision").time - time).abs() < 1e-12);
+    assert!(
+        (simulation.coordinates()[0] - 0.1).abs() < 1e-12 && (simulation.speeds()[0] - 0.1).abs() < 1e-12
+    );
+    let mut simulation = begin(&lift, &[0.0, 0.0], driven(|t| [0.2, 0.0 * t]));
+    run(&mut simulation, 1.0);
+    assert!((simulation.coordinates()[0] - 0.2).abs() < 1e-12);
+    for heights in [|t: f64| 0.1 * t, |t: f64| 0.1 * (20.0 * t).sin()] {
+        let mut simulation = begin(&lift, &[0.0, 0.0], driven(move |t| [heights(t), 0.0]));
+        let error = refusal(&mut simulation, 1.0);
+        assert!(matches!(error.kind, ErrorKind::GapRate { .. }), "{error}");
+    }
+    let mut simulation = begin(&lift, &[0.0, 0.0], driven(|t| [0.1 * t * t, 0.2 * t]));
+    let error = refusal(&mut simulation, 1.0);
+    assert!(matches!(error.kind, ErrorKind::BadInput(_)), "{error}");
 }
