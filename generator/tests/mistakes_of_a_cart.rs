@@ -264,7 +264,7 @@ const CASES: &[Case] = &[
     ("constraint_time", &[(5, "dependent { y: m/s }"), (15, "constraints { y = l*time; }")],
         &["E031 16:19"]),
     ("constraint_zero", &[(5, "dependent { y: m/s }"), (15, "constraints { 0 = 0*y; }")],
-        &["E070 16:15"]),
+        &["E077 16:15"]),
     ("constraint_vec_scalar", &[(5, "dependent { y: m/s }"), (15, "constraints { velocity(P) = y; }")],
         &["E040 16:29"]),
     ("constraint_noneq", &[(5, "dependent { y: m/s }"), (15, "constraints { y - l*w; }")],

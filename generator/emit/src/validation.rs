@@ -33,9 +33,10 @@ impl Emitter<'_> {
         let krate = self.krate;
         let checks = self.mechanism.shapes.iter().flat_map(|shape| {
             let name = &shape.name;
-            shape.sizes.iter().zip(shape.kind.sizes()).filter_map(move |(size, dimension)| {
-                let varies = !matches!(size, Scalar::Number(_));
-                let size = varies.then(|| self.scalar(size, DEPTH)).flatten()?;
+            shape.dimensions().filter_map(move |dimension| {
+                let varies = !matches!(dimension.value, Scalar::Number(_));
+                let size = varies.then(|| self.scalar(&dimension.value, DEPTH)).flatten()?;
+                let dimension = dimension.name;
                 Some(quote!(#krate::generated::check_size::<T>(#size, #name, #dimension)?;))
             })
         });

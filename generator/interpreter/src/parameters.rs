@@ -57,9 +57,9 @@ pub fn check(model: &Mechanism, parameters: &[f64]) -> Result<(), ParameterError
         }
     }
     for shape in &model.shapes {
-        for (size, dimension) in shape.sizes.iter().zip(shape.kind.sizes()) {
-            if let Some(size) = scalar(model, parameters, size, DEPTH) {
-                check_size(size, intern(&shape.name), dimension)?;
+        for dimension in shape.dimensions() {
+            if let Some(size) = scalar(model, parameters, &dimension.value, DEPTH) {
+                check_size(size, intern(&shape.name), dimension.name)?;
             }
         }
     }

@@ -207,10 +207,10 @@ impl Machine {
         let impossible = impossible_sizes(&self.mechanism, &state.to_numeric());
         let Some(found) = impossible.first() else { return Ok(()) };
         let shape = &self.mechanism.shapes[found.shape.0];
-        let (name, dimension) = (&shape.name, shape.kind.sizes().get(found.place).unwrap_or(&"size"));
-        let value = found.value;
-        let message =
-            format!("the {dimension} of `{name}` is not positive: with these parameters it is {value} m");
+        let message = format!(
+            "the {} of `{}` is not positive: with these parameters it is {} m",
+            found.name, shape.name, found.value
+        );
         Err(Failure::new(Kind::Of(Cause::ImpossibleSize), message))
     }
 

@@ -21,8 +21,8 @@ pub fn never_finite(m: &Mechanism, views: &[&Views<'_>], far: &[Views<'_>]) -> O
 }
 
 /// Says so where the initial values are a state without numbers, although others have them. A model that states
-/// no initial value says nothing of its start.
-pub fn at_the_start(m: &Mechanism) -> Option<Diagnostic> {
+/// no initial value says nothing of its start; in one that is not `flawless` masses are not looked at.
+pub fn at_the_start(m: &Mechanism, flawless: bool) -> Option<Diagnostic> {
     let stated = m.coordinates.iter().chain(&m.speeds).any(|variable| variable.value.is_some());
     let open = m.parameters.iter().any(|parameter| parameter.value.is_none());
     let mut state = State::of(m);
@@ -30,10 +30,15 @@ pub fn at_the_start(m: &Mechanism) -> Option<Diagnostic> {
         return None;
     }
     let views = Views::at(m, &state);
-    let failure = match &views {
-        Ok(views) => numeric::evaluate_views(m, views).err(),
-        Err(failure) => Some(failure.clone()),
+    let numbers = match &views {
+        Ok(views) => numeric::evaluate_views(m, views),
+        Err(failure) => Err(failure.clone()),
     };
+    let without_inertia = match (&views, &numbers) {
+        (Ok(views), Ok(at)) if flawless && !m.bodies.is_empty() => motion::without_inertia(m, views, at),
+        _ => None,
+    };
+    let failure = numbers.err();
     let found = match (&views, &failure) {
         (Ok(views), None | Some(Failure::Unsupported(_))) => {
             geometry(m, &[views]).or_else(|| forces(m, &[views]))
@@ -49,7 +54,14 @@ pub fn at_the_start(m: &Mechanism) -> Option<Diagnostic> {
             let told = motion::nowhere(m, &state, &failure)?;
             (format!("with the initial values {}", told.message), told.primary.span)
         }
-        (None, None) => return None,
+        (None, None) => {
+            let speed = m.speeds.get(without_inertia?.0)?;
+            let message = format!(
+                "with the initial values the mass matrix is singular: nothing resists `{}`",
+                speed.name
+            );
+            (message, speed.span)
+        }
     };
     let help = "give initial values at which the model has numbers: no motion can begin at these";
     let told = Diagnostic::new(codes::NO_START, span, message).help(help);

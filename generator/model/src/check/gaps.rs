@@ -1,5 +1,5 @@
-//! Checks gaps: the rate of a gap must be the normal velocity of its contact, and no gap may be negative at
-//! the initial values.
+//! Checks gaps: the rate of a gap must be the normal velocity of its contact, it must change its sign
+//! where the contact closes, and no gap may be negative at the initial values.
 
 use super::states::{Seen, at_rest, stated};
 use crate::diagnostics::{Diagnostic, codes};
@@ -12,6 +12,12 @@ const SAME: f64 = 1e-6;
 /// A gap may begin negative by this much, relative to the size of the coordinates above 1: rounding of
 /// initial values.
 const TOUCHING: f64 = 1e-6;
+/// How far behind a surface a gap is looked at, in distances to where the way to the surface began.
+const BEYOND: [f64; 4] = [1e-4, 1e-3, 0.01, 0.1];
+/// A gap is closed if it is this part of what it was where the way to the surface began.
+const CLOSED: f64 = 1e-6;
+/// A gap falls towards a surface if near it its rate is this part of the mean rate on the way.
+const FALLS: f64 = 0.2;
 
 /// Gaps that do not belong to their contacts, and those that begin negative. `found` is what is said already
 /// of the contacts.
@@ -26,7 +32,11 @@ pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagn
             continue;
         }
         // the gap of shapes follows from them; beside a face that ends it has another rate
-        let strange = if contact.shapes.is_some() { None } else { strange(m, contact, gap, seen) };
+        let strange = if contact.shapes.is_some() {
+            None
+        } else {
+            strange(m, contact, gap, seen).or_else(|| one_sided(m, contact, gap, seen))
+        };
         match strange {
             Some(diagnostic) => out.push(diagnostic),
             None => {
@@ -57,7 +67,8 @@ enum Fit {
 }
 
 fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) -> Option<Diagnostic> {
-    let fits: Vec<Fit> = seen.iter().filter_map(|seen| fit(&seen.views, contact, gap)).collect();
+    let fits: Vec<Fit> =
+        seen.iter().filter_map(|seen| fit(m, seen.state, &seen.views, contact, gap)).collect();
     if fits.is_empty() || fits.contains(&Fit::Same) {
         return None;
     }
@@ -66,7 +77,7 @@ fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) ->
         .iter()
         .filter_map(|seen| {
             let state = on_surface(m, gap, seen.state)?;
-            fit(&Views::at(m, &state).ok()?, contact, gap)
+            fit(m, &state, &Views::at(m, &state).ok()?, contact, gap)
         })
         .collect();
     let last = if closed.is_empty() { &fits } else { &closed };
@@ -92,11 +103,52 @@ fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) ->
     Some(Diagnostic::new(codes::GAP_RATE, contact.gap_span, message).related(related.0, related.1).help(help))
 }
 
-fn fit(views: &Views<'_>, contact: &Contact, gap: &Scalar) -> Option<Fit> {
-    let rate = views.rate_parts(gap).ok()?;
+/// A gap that is negative nowhere behind the surface, although it falls at a rate towards it: a motion sees that a contact
+/// closes where its gap changes its sign. (One that only just closes, as at the end of a swing, falls at no rate there.)
+fn one_sided(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) -> Option<Diagnostic> {
+    let at = |state: &State| Some(at_rest(m, state).scalar(gap, Level::Geometry).ok()?.re);
+    let mut found = false;
+    for seen in seen {
+        let Some(closed) = on_surface(m, gap, seen.state) else { continue };
+        // from the state (-1) through the surface (0)
+        let along = |part: f64| {
+            let mut state = closed.clone();
+            for (q, from) in state.coordinates.iter_mut().zip(&seen.state.coordinates) {
+                *q += part * (*q - from);
+            }
+            numeric::assemble(m, &mut state).ok()?;
+            at(&state)
+        };
+        let Some(start) = at(seen.state).filter(|start| *start > 0.0) else { continue };
+        if at(&closed).is_none_or(|closed| closed > CLOSED * start) {
+            continue;
+        }
+        for part in BEYOND {
+            match along(part) {
+                Some(behind) if behind < 0.0 => return None,
+                Some(behind) if behind.is_nan() => {}
+                Some(_) => found |= along(-part).is_some_and(|before| before > FALLS * part * start),
+                None => {}
+            }
+        }
+    }
+    found.then(|| {
+        let message = format!("the gap of `{}` is negative nowhere behind the surface", contact.name);
+        let help = "a collision is seen where the gap changes its sign: write it without norm, abs and max, as `dot(position(P), N.y)` or `norm(position(P)) - r`";
+        Diagnostic::new(codes::GAP_RATE, contact.gap_span, message).help(help)
+    })
+}
+
+fn fit(m: &Mechanism, state: &State, views: &Views<'_>, contact: &Contact, gap: &Scalar) -> Option<Fit> {
+    let mut rate = views.rate_parts(gap).ok()?;
     let normal = views.now.vector(&contact.normal, Level::Motion).ok()?.map(|c| c.re);
     let velocity = views.vector_parts(|values| values.contact_velocity(contact)).ok()?;
-    let along: Vec<f64> = velocity.into_iter().map(|v| dot3(v, normal)).collect();
+    let mut along: Vec<f64> = velocity.into_iter().map(|v| dot3(v, normal)).collect();
+    // the rate at which an input moves the surface is not known
+    if follows_input(m, state, gap) {
+        rate.pop();
+        along.pop();
+    }
     let size = |list: &[f64]| list.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let (of_gap, of_velocity) = (size(&rate), size(&along));
     if !of_gap.is_finite() || !of_velocity.is_finite() || of_velocity < 1e-9 {
@@ -113,6 +165,14 @@ fn fit(views: &Views<'_>, contact: &Contact, gap: &Scalar) -> Option<Fit> {
     } else {
         Fit::Other
     })
+}
+
+/// Whether the gap is another with other inputs.
+fn follows_input(m: &Mechanism, state: &State, gap: &Scalar) -> bool {
+    let at = |state: &State| at_rest(m, state).scalar(gap, Level::Geometry).map(|gap| gap.re).ok();
+    let mut other = state.clone();
+    other.inputs.iter_mut().for_each(|input| *input = 0.1 + 1.7 * *input);
+    !m.inputs.is_empty() && at(state) != at(&other)
 }
 
 /// The gap and its derivatives with respect to the coordinates, one at a time.

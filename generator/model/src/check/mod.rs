@@ -3,15 +3,18 @@
 
 mod bodies;
 mod body_points;
+mod by_values;
 mod configuration;
 mod contacts;
 mod counts;
 pub mod coupled;
+mod empty_equations;
 mod exact;
 mod finite;
 mod gaps;
 mod hollows;
 mod hulls;
+mod implicit_surfaces;
 mod independent_constraints;
 mod loads;
 mod loops;
@@ -160,6 +163,11 @@ fn analysed(source: &Source) -> Analysis {
     }
     // parts that could not be read hold placeholders: only checks that do not depend on them are made
     if let Some((mechanism, readable)) = &mut mechanism {
+        if readable.motion {
+            let empty = physics::empty_equations(mechanism);
+            readable.motion = empty.is_empty();
+            diagnostics.extend(empty);
+        }
         if readable.motion {
             mechanism.determining_constraints = physics::determining_constraints(mechanism, readable);
             let counts = counts::counts(mechanism);

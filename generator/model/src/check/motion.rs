@@ -5,7 +5,7 @@ use super::states::{Seen, at_rest};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
 use crate::numeric::views::dot3;
-use crate::numeric::{self, Evaluation, Failure, Level, State};
+use crate::numeric::{self, Evaluation, Failure, Level, State, Views};
 
 /// What rounding can leave of a number beside its terms.
 const ROUNDING: f64 = 1e-12;
@@ -28,7 +28,7 @@ pub fn changing_inertias(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
 
 /// For each body: whether its inertia is given in a frame in which it changes. It does not if turning about
 /// the relative angular velocity W leaves it as it is: W I = I W.
-fn turning_inertias(m: &Mechanism, state: &State, at: &Evaluation) -> Vec<bool> {
+pub fn turning_inertias(m: &Mechanism, state: &State, at: &Evaluation) -> Vec<bool> {
     let values = at_rest(m, state);
     let changes = |body: &Body| {
         let (Some(frame), Some(inertia)) = (body.frame, &body.inertia) else { return false };
@@ -134,7 +134,7 @@ pub fn inertia_of_speeds(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Diagnostic>
     if m.bodies.is_empty() {
         return None;
     }
-    let noise: Vec<Vec<f64>> = seen.iter().map(|seen| noise(m, seen).unwrap_or_default()).collect();
+    let noise: Vec<Vec<f64>> = seen.iter().map(|seen| noise(m, &seen.views).unwrap_or_default()).collect();
     let column =
         |(seen, noise): (&Seen<'_>, &Vec<f64>)| numeric::singular_column(&seen.at.mass_matrix, noise);
     let columns: Vec<Option<usize>> = seen.iter().zip(&noise).map(column).collect();
@@ -157,11 +157,16 @@ pub fn inertia_of_speeds(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Diagnostic>
     Some(Diagnostic::new(codes::NO_INERTIA, speed.span, message).help(help))
 }
 
+/// The speed along which nothing resists at one state, if there is one.
+pub fn without_inertia(m: &Mechanism, views: &Views<'_>, at: &Evaluation) -> Option<SpeedId> {
+    numeric::singular_column(&at.mass_matrix, &noise(m, views)?).map(SpeedId)
+}
+
 /// What rounding can make of each diagonal entry of the mass matrix where it should be 0: by what moves at
 /// all with that speed, whatever its units and however little that is.
-fn noise(m: &Mechanism, seen: &Seen<'_>) -> Option<Vec<f64>> {
-    let values = &seen.views.now;
-    let mut noise = vec![0.0_f64; seen.views.units.len()];
+fn noise(m: &Mechanism, views: &Views<'_>) -> Option<Vec<f64>> {
+    let values = &views.now;
+    let mut noise = vec![0.0_f64; views.units.len()];
     let mut masses = 0.0_f64;
     for body in &m.bodies {
         masses = masses.max(values.scalar(&body.mass, Level::Motion).ok()?.re.abs());
@@ -169,12 +174,12 @@ fn noise(m: &Mechanism, seen: &Seen<'_>) -> Option<Vec<f64>> {
             continue;
         };
         let size = inertia.iter().flatten().fold(0.0_f64, |size, c| size.max(c.abs()));
-        let turning = seen.views.partials(|values| values.angular_velocity(frame)).ok()?;
+        let turning = views.partials(|values| values.angular_velocity(frame)).ok()?;
         noise.iter_mut().zip(turning).for_each(|(noise, w)| *noise += ROUNDING * size * dot3(w, w));
     }
     let mut fastest = vec![0.0_f64; noise.len()];
     for i in 0..m.points.len() {
-        let moving = seen.views.partials(|values| values.velocity(PointId(i))).ok()?;
+        let moving = views.partials(|values| values.velocity(PointId(i))).ok()?;
         fastest.iter_mut().zip(moving).for_each(|(fastest, v)| *fastest = fastest.max(dot3(v, v)));
     }
     noise.iter_mut().zip(fastest).for_each(|(noise, v)| *noise += ROUNDING * ROUNDING * masses * v);

@@ -4,8 +4,8 @@
 use super::exact::{divisors, enclosures};
 use super::states::Seen;
 use super::{
-    bodies, body_points, configuration, contacts, coupled, finite, gaps, hollows, independent_constraints,
-    loads, loops, motion, shapes, states, unit_vectors, vector_constraints,
+    bodies, body_points, by_values, configuration, contacts, coupled, empty_equations, finite, gaps, hollows,
+    independent_constraints, loads, loops, motion, shapes, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
@@ -32,6 +32,14 @@ pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic
         return vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
     }
     with_room(|| look(m, readable, name))
+}
+
+/// Equations that say nothing.
+pub fn empty_equations(m: &Mechanism) -> Vec<Diagnostic> {
+    if parts(m) > MOST_PARTS {
+        return Vec::new();
+    }
+    with_room(|| empty_equations::empty_equations(m))
 }
 
 /// The velocity constraints that determine the dependent speeds, where more are stated than are needed.
@@ -150,8 +158,12 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
         out.extend(gaps::gaps(m, &seen, &out));
         out.extend(loads::loads(m, &seen));
         out.extend(loops::open_at_the_start(m));
-        out.extend(finite::at_the_start(m));
+        let flawless = !out.iter().any(Diagnostic::hides_meaning);
+        out.extend(finite::at_the_start(m, flawless));
         out.extend(hollows::narrow(m));
+        if flawless {
+            out.extend(by_values::by_values(m, &met));
+        }
     }
     out
 }

@@ -2,12 +2,15 @@
 //! the mass centres of the bodies that they make.
 
 use super::bodies::number;
+use super::implicit_surfaces::implicit_surface;
 use super::states::{Seen, at_rest};
+use super::unit_vectors::length_shown;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
 use crate::numeric::hyper_dual::HyperDual;
 use crate::numeric::views::{cross3, dot3, norm3, sub3};
 use crate::numeric::{Failure, Level, State, Views};
+use crate::span::Span;
 
 /// A place or axis that leaves its frame by this share of its velocity is not fixed in it.
 const SLIP: f64 = 1e-9;
@@ -19,8 +22,9 @@ pub fn shapes(m: &Mechanism, state: Option<&State>, seen: &[Seen<'_>]) -> Vec<(S
     for (i, shape) in m.shapes.iter().enumerate() {
         let size = sizes.iter().find(|found| found.shape == ShapeId(i));
         let found = size
-            .and_then(|found| impossible_size(shape, *found))
+            .map(|found| impossible_size(shape, *found))
             .or_else(|| state.and_then(|state| impossible_density(m, state, shape)))
+            .or_else(|| implicit_surface(m, state?, shape))
             .or_else(|| stranger(m, shape, seen))
             .or_else(|| long_axis(m, shape, seen))
             .or_else(|| turning_axis(m, shape, seen));
@@ -90,10 +94,12 @@ fn out_of_plane(
 pub struct ImpossibleSize {
     /// of this shape
     pub shape: ShapeId,
-    /// its place in [`Kind::sizes`]
-    pub place: usize,
+    /// such as `radius`
+    pub name: &'static str,
     /// m
     pub value: f64,
+    /// where it is stated
+    pub span: Span,
 }
 
 /// The dimensions of shapes that are not positive with the parameters of a state. What has no value there is
@@ -102,10 +108,10 @@ pub fn impossible_sizes(m: &Mechanism, state: &State) -> Vec<ImpossibleSize> {
     let values = at_rest(m, state);
     let mut found = Vec::new();
     for (i, shape) in m.shapes.iter().enumerate() {
-        for (place, size) in shape.sizes.iter().enumerate() {
-            let Ok(value) = values.scalar(size, Level::Geometry) else { continue };
+        for Size { name, value, span } in shape.dimensions() {
+            let Ok(value) = values.scalar(&value, Level::Geometry) else { continue };
             if value.re <= 0.0 {
-                found.push(ImpossibleSize { shape: ShapeId(i), place, value: value.re });
+                found.push(ImpossibleSize { shape: ShapeId(i), name, value: value.re, span });
             }
         }
     }
@@ -113,11 +119,15 @@ pub fn impossible_sizes(m: &Mechanism, state: &State) -> Vec<ImpossibleSize> {
 }
 
 /// A length that is not positive with the values of the model.
-fn impossible_size(shape: &Shape, found: ImpossibleSize) -> Option<Diagnostic> {
-    let (name, span) = (shape.kind.sizes().get(found.place)?, shape.size_spans.get(found.place)?);
-    let message = format!("the {name} of `{}` is {} m", shape.name, number(found.value));
-    let help = "the dimensions of a shape are positive";
-    Some(Diagnostic::new(codes::SHAPE, *span, message).help(help))
+fn impossible_size(shape: &Shape, found: ImpossibleSize) -> Diagnostic {
+    let message = format!("the {} of `{}` is {} m", found.name, shape.name, number(found.value));
+    let help = match shape.kind {
+        Kind::Torus => {
+            "the dimensions of a shape are positive, and the tube of a torus is thinner than its radius"
+        }
+        _ => "the dimensions of a shape are positive",
+    };
+    Diagnostic::new(codes::SHAPE, found.span, message).help(help)
 }
 
 /// A density that is not positive with the values of the model.
@@ -217,7 +227,7 @@ fn long_axis(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagnost
     let off = |length: &f64| length.is_finite() && (length - 1.0).abs() > 1e-9;
     let length = lengths.collect::<Vec<f64>>().into_iter().find(off)?;
     let what = if shape.kind.is_flat() { "normal" } else { "axis" };
-    let message = format!("the {what} of `{}` has the length {}, not 1", shape.name, number(length));
+    let message = format!("the {what} of `{}` has the length {}, not 1", shape.name, length_shown(length));
     let help = if length < 1e-12 { "it is zero" } else { "`unit(v)` is the unit vector along v" };
     Some(Diagnostic::new(codes::SHAPE, shape.axis_span, message).help(help))
 }

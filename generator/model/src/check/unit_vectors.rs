@@ -77,7 +77,12 @@ fn not_unit(
         codes::FRAME => "divide its components by its length",
         _ => "`unit(v)` is the unit vector along v",
     };
-    Some(Diagnostic::new(code, span, message(number(*first))).help(help))
+    Some(Diagnostic::new(code, span, message(length_shown(*first))).help(help))
+}
+
+/// A length that is not 1, with the digits that tell it from 1.
+pub(super) fn length_shown(length: f64) -> String {
+    if (length - 1.0).abs() < 1e-3 { format!("{length:.12}") } else { number(length) }
 }
 
 /// Initial values of quaternions: all left out (or 0) is the identity.

@@ -131,4 +131,5 @@ codes! {
     NO_GAP = "W014", "a contact that no simulation sees";
     NO_START = "W015", "a start without numbers";
     NARROW = "W016", "a sphere that is larger than a hollow";
+    BY_VALUES = "W017", "what holds with some values only";
 }

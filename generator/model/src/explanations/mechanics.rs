@@ -222,7 +222,7 @@ pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: EMPTY_EQUATION,
         text: "A constraint or kinematical equation must contain speeds or rates; a configuration equation \
-            must contain coordinates.",
+            must contain coordinates; and neither may hold in every state, as `u1 = u1` does.",
         wrong: Some("kinematics { d(q1)/dt = u1; q1 = 0; }"),
         right: Some("kinematics { d(q1)/dt = u1; }"),
     },

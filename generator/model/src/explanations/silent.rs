@@ -1,4 +1,4 @@
-//! Explanations of W007 to W012: models that can be solved, but probably do not say what their author means.
+//! Explanations of warnings of models that can be solved, but probably do not say what their author means.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;
@@ -169,6 +169,22 @@ pub(super) const TABLE: &[Explanation] = &[
         right: Some(
             "shapes { Knob { of: Rod, at: P, sphere: l/20 }, Wall { at: O - 2*l*N.y, curve: l/10*sin(2*x/l)^2 } }\n\
             contacts { tip { Knob on Wall } }",
+        ),
+    },
+    Explanation {
+        code: BY_VALUES,
+        text: "Normals and axes must be unit vectors, and an inertia that is given in a frame in which its body turns must \
+            be round about that axis. Here this is so with the values that the model states, and not with others, which \
+            parameters may have at run time: equations would be wrong then. Divide a vector by its length with `unit`, \
+            use an angle, name one parameter twice, or make the parameters `fixed`.",
+        wrong: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, a: 1 = 0.6, b: 1 = 0.8 }\n\
+            contacts { tip { point: P of Rod, normal: -a*N.x - b*N.y, gap: l - dot(position(P), a*N.x + b*N.y) } }",
+        ),
+        right: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, a: rad = 0.9273 }\n\
+            contacts { tip { point: P of Rod, normal: -cos(a)*N.x - sin(a)*N.y, gap: l - dot(position(P), \
+            cos(a)*N.x + sin(a)*N.y) } }",
         ),
     },
 ];

@@ -11,7 +11,7 @@
 
 pub mod divisors;
 pub mod enclosures;
-mod nodes;
+pub mod nodes;
 mod values;
 
 use std::collections::HashMap;

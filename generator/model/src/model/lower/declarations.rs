@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::super::mechanism::{Definition, DefinitionValue, Frame, Orientation, Place, Point, Vector};
+use super::super::mechanism::{
+    Definition, DefinitionValue, Frame, FrameId, Orientation, Place, Point, PointId, Vector,
+};
 use super::Lowering;
 use super::resolve::{MAX_SUGGESTIONS, unknown_name};
 use crate::diagnostics::{Code, Diagnostic, Label, codes};
@@ -58,7 +60,11 @@ impl Lowering<'_> {
         let tree = self.tree;
         let mut seen: HashMap<&str, Span> = HashMap::new();
         for name in tree.angular_velocities.iter().map(|a| &a.frame) {
-            self.frame_named(name);
+            if self.frame_named(name) == Some(FrameId::N) {
+                let message = format!("the angular velocity of `{}` is stated: it does not turn", name.text);
+                let help = "leave it out; a frame that turns is declared under `frames`";
+                self.report(Diagnostic::new(codes::INCONSISTENT, name.span, message).help(help));
+            }
             if let Some(first) = seen.insert(&name.text, name.span) {
                 let message = format!("the angular velocity of `{}` is stated twice", name.text);
                 self.report(
@@ -68,7 +74,11 @@ impl Lowering<'_> {
         }
         seen.clear();
         for name in tree.velocities.iter().map(|v| &v.point) {
-            self.point_named(name);
+            if self.point_named(name) == Some(PointId::O) {
+                let message = format!("the velocity of `{}` is stated: it does not move", name.text);
+                let help = "leave it out; a point that moves is placed under `points`";
+                self.report(Diagnostic::new(codes::INCONSISTENT, name.span, message).help(help));
+            }
             if let Some(first) = seen.insert(&name.text, name.span) {
                 let message = format!("the velocity of `{}` is stated twice", name.text);
                 self.report(

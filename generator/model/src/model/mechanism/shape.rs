@@ -189,3 +189,30 @@ pub struct Shape {
     /// where it is declared
     pub span: Span,
 }
+
+/// A length of a shape that must be positive.
+#[derive(Clone, Debug)]
+pub struct Size {
+    /// such as `radius`
+    pub name: &'static str,
+    /// m
+    pub value: Scalar,
+    /// where it is stated
+    pub span: Span,
+}
+
+impl Shape {
+    /// The lengths that must be positive: those that are stated, and of a torus the radius of its hole, without which it
+    /// would pass through itself.
+    pub fn dimensions(&self) -> impl Iterator<Item = Size> {
+        let stated = self.kind.sizes().iter().zip(&self.sizes).zip(&self.size_spans);
+        let hole = match (self.kind, &self.sizes[..], &self.size_spans[..]) {
+            (Kind::Torus, [radius, tube], [_, span]) => {
+                let value = Scalar::Add(vec![radius.clone(), Scalar::Neg(Box::new(tube.clone()))]);
+                Some(Size { name: "radius of the hole", value, span: *span })
+            }
+            _ => None,
+        };
+        stated.map(|((name, value), span)| Size { name, value: value.clone(), span: *span }).chain(hole)
+    }
+}
