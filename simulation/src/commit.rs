@@ -65,8 +65,8 @@ impl Transition<'_> {
         let moved = (|| {
             drift::close_loops(self.mechanism.mechanism, t, &mut q, &u, &inputs)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-            let least = SIZE * self.front.scales.length;
-            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &inputs, &contacts, least)?;
+            let sizes = (self.lengths, SIZE * self.front.scales.length);
+            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &inputs, &contacts, sizes)?;
             // Velocities are projected last, at the corrected positions, since a remaining normal velocity
             // would count as an approach.
             drift::hold_velocities(self.mechanism, t, &q, &mut u, &inputs, (&closed, known))?;

@@ -5,6 +5,7 @@ use hodograph::{ComponentKind, Contacts, Distance, State, StateError};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::{ClosedContacts, least_squares};
+use crate::lengths::Lengths;
 use crate::torques::WithTorques;
 
 /// Largest number of Newton steps.
@@ -67,10 +68,10 @@ pub(crate) fn close_gaps(
     speeds: &[f64],
     inputs: &[f64],
     contacts: &[usize],
-    least: f64,
+    (lengths, least): (&Lengths, f64),
 ) -> Result<(Option<Left>, Option<ClosedContacts>), StateError> {
     let n = coordinates.len();
-    let size = coordinates.iter().fold(least, |size, q| size.max(q.abs()));
+    let size = lengths.greatest(coordinates).max(least);
     let mut before = f64::INFINITY;
     let mut known = None;
     // torques have no gap

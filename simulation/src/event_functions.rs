@@ -136,10 +136,7 @@ impl Transition<'_> {
 
     /// A bound of the rounding error of a gap, m.
     pub(crate) fn rounding_of_gap(&self, contact: usize) -> f64 {
-        let n = self.mechanism.count(ComponentKind::Coordinate);
-        let size =
-            self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
-        4.0 * f64::EPSILON * self.gap_size(contact, size)
+        4.0 * f64::EPSILON * self.gap_size(contact, self.size_of_coordinates())
     }
 
     /// Checks that a closing gap is known: the place of a collision cannot be determined if rounding exceeds

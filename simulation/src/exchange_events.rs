@@ -174,9 +174,9 @@ impl Transition<'_> {
             .chain(gaps.iter().copied())
             .collect();
         let mut q = here.coordinates.to_vec();
-        let least = SIZE * front.scales.length;
+        let sizes = (self.lengths, SIZE * front.scales.length);
         let moved =
-            drift::close_gaps(self.mechanism, here.time, &mut q, here.speeds, here.inputs, &touching, least);
+            drift::close_gaps(self.mechanism, here.time, &mut q, here.speeds, here.inputs, &touching, sizes);
         let (left, _) = moved.map_err(|error| self.failure(Failure::State(error)))?;
         if let Some(left) = left {
             return Err(self.error(Some(left.contact), ErrorKind::Drift(left.gap)));

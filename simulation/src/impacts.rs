@@ -7,7 +7,7 @@ use hodograph::{ComponentKind, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::{Along, ClosedContacts};
-use crate::event_functions::{OWN, SIZE};
+use crate::event_functions::OWN;
 use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
@@ -184,8 +184,7 @@ impl Transition<'_> {
             inputs: &self.front.held,
         };
         let fault = |error| self.failure(Failure::State(error));
-        let size =
-            self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
+        let size = self.size_of_coordinates();
         let (mut touching, open): (Vec<usize>, Vec<usize>) = (0..self.front.phases.len())
             .filter(|&contact| self.surfaces[contact].is_some())
             .partition(|&contact| self.front.phases[contact].is_closed() || first == Some(contact));

@@ -56,6 +56,7 @@ mod given_law;
 mod impact_at_once;
 mod impact_without_collision;
 mod impacts;
+mod lengths;
 mod look_ahead;
 mod lzb;
 mod many;

@@ -8,6 +8,7 @@ use hodograph::{ComponentKind, Contacts, State};
 
 use crate::angles::Angles;
 use crate::closed_contacts::ClosedContacts;
+use crate::lengths::Lengths;
 use crate::torques::WithTorques;
 
 /// Units of a problem.
@@ -34,8 +35,12 @@ const NEAR: f64 = 1e-6;
 
 impl Scales {
     /// The scales of a start state; 1 if it does not determine them.
-    pub fn of(mechanism: &dyn Contacts<f64>, angles: &Angles, state: &State<'_>) -> Self {
-        let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
+    pub fn of(
+        mechanism: &dyn Contacts<f64>,
+        (angles, lengths): (&Angles, &Lengths),
+        state: &State<'_>,
+    ) -> Self {
+        let place = lengths.greatest(state.coordinates);
         let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
         let (mut acceleration, mut speed, mut approach) = (0.0_f64, 0.0_f64, 0.0_f64);
         for contact in 0..mechanism.count(ComponentKind::Contact) {
@@ -91,7 +96,7 @@ mod tests {
         let u: [f64; 5] = Speeds::default().into();
         let scales = Scales::of(
             &rod,
-            &Angles::of(&rod),
+            (&Angles::of(&rod), &Lengths::of(&rod)),
             &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] },
         );
         assert!(scales.length >= 1.0 && scales.length < 4.0, "{scales:?}");
@@ -106,7 +111,7 @@ mod tests {
         let u: [f64; 5] = Speeds { u1: 0.0, u2: 0.0, u3: -1e-3, u4: 0.0, u5: 0.0 }.into();
         let scales = Scales::of(
             &rod,
-            &Angles::of(&rod),
+            (&Angles::of(&rod), &Lengths::of(&rod)),
             &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] },
         );
         assert!((scales.length - l).abs() < 1e-9, "{scales:?}");

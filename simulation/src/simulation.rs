@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use crate::angles::Angles;
 use crate::check::check;
 use crate::front::Front;
+use crate::lengths::Lengths;
 use crate::motion::{Failure, WORKS};
 use crate::pair::Pair;
 use crate::phase::{ContactPhase, Modes};
@@ -28,6 +29,8 @@ pub struct Simulation<'m> {
     mechanism: &'m dyn Contacts<f64>,
     /// the angular speeds and coordinates
     angles: Angles,
+    /// the units of the coordinates
+    lengths: Lengths,
     /// torques of rolling and spinning friction
     torques: Vec<Torque>,
     pub(crate) options: Options,
@@ -107,13 +110,15 @@ impl<'m> Simulation<'m> {
         }
         let state = &State { inputs: &inputs, ..*state };
         let sampled = matches!(options.drive, Drive::Sampled { .. } | Drive::Table(_));
-        let angles = Angles::of(mechanism);
-        let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, &angles, state));
+        let (angles, lengths) = (Angles::of(mechanism), Lengths::of(mechanism));
+        let scales = Scales::of(mechanism, (&angles, &lengths), state);
+        let mut front = Front::new(state, surfaces.len(), sampled, scales);
         front.greatest = mechanism.kinetic_energy(state).unwrap_or(0.0);
         let view = (front.t, front.y.clone());
         let mut simulation = Self {
             mechanism,
             angles,
+            lengths,
             torques,
             options,
             surfaces,
@@ -147,6 +152,7 @@ impl<'m> Simulation<'m> {
         Transition {
             mechanism: self.with_torques(),
             angles: &self.angles,
+            lengths: &self.lengths,
             options: &self.options,
             surfaces: &self.surfaces,
             front: self.front.clone(),

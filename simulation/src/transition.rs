@@ -6,7 +6,9 @@
 use hodograph::{ComponentKind, State};
 
 use crate::angles::Angles;
+use crate::event_functions::SIZE;
 use crate::front::Front;
+use crate::lengths::Lengths;
 use crate::motion::{Failure, Motion};
 use crate::pair::{Friction, Pair};
 use crate::phase::{Closed, Modes, Phase};
@@ -20,6 +22,8 @@ pub(crate) struct Transition<'s> {
     pub mechanism: WithTorques<'s>,
     /// the angular speeds and coordinates
     pub angles: &'s Angles,
+    /// the units of the coordinates
+    pub lengths: &'s Lengths,
     pub options: &'s Options,
     /// the surfaces of each contact; `None` for a contact without a gap
     pub surfaces: &'s [Option<Pair>],
@@ -47,6 +51,11 @@ impl Transition<'_> {
         let (n, p) =
             (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         State { time: front.t, coordinates: &front.y[..n], speeds: &front.y[n..n + p], inputs: &front.held }
+    }
+
+    /// The size of the coordinates at the front, m or rad: the greatest, or a small length of the problem.
+    pub(crate) fn size_of_coordinates(&self) -> f64 {
+        self.lengths.greatest(self.here().coordinates).max(SIZE * self.front.scales.length)
     }
 
     /// The modes at the front.

@@ -2,7 +2,7 @@
 
 use crate::many::{Ended, Start, follow, model, surface, with_parameters};
 use hodograph::{ComponentKind, Law, Mechanism};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 use hodograph_simulation::Options;
 
 /// How many of the small units one of these is: lengths, masses and times are a thousand times the number.
@@ -78,11 +78,13 @@ fn dominoes_do_not_depend_on_units() {
     }
 }
 
+/// The kinds and contacts of the events.
+fn list(end: &Ended) -> Vec<(&'static str, Option<usize>)> {
+    end.events.iter().map(|event| (event.kind.name(), event.contact)).collect()
+}
+
 /// Both have the same events at the same times.
 fn compare(name: &str, [one, other]: &[Ended; 2], within: f64) {
-    let list = |end: &Ended| -> Vec<(&'static str, Option<usize>)> {
-        end.events.iter().map(|event| (event.kind.name(), event.contact)).collect()
-    };
     assert!(one.error.is_none() && other.error.is_none(), "{name}: {:?} {:?}", one.error, other.error);
     assert!(!one.events.is_empty());
     assert_eq!(list(one), list(other), "{name}: {:?} {:?}", one.names(), other.names());
@@ -90,5 +92,52 @@ fn compare(name: &str, [one, other]: &[Ended; 2], within: f64) {
         // How near to its singular point a motion is followed depends on the tolerance of angles.
         let close = if a.kind.name() == "singular" { 1e-5 } else { within };
         assert!((1e-3 * b.time - a.time).abs() < close, "{name}: {} {} {}", a.kind.name(), a.time, b.time);
+    }
+}
+
+/// A block that is dropped on two feet, one of which strikes a little before the other, with its place in `unit`.
+fn rocking(unit: &str, metres: f64) -> String {
+    format!(
+        "mechanism Block;
+        parameters {{ m: kg = 2, a: mm = 200, b: mm = 500, J: kg*m^2 = 0.2, g: m/s^2 = 9.81 }}
+        coordinates {{ x: {unit}, y: {unit} = {y:e}, q: rad = 1e-4 }}
+        speeds {{ ux: m/s, uy: m/s, w: rad/s }}
+        frames {{ B = N.rotate(z, q); }}
+        points {{ G = O + x*N.x + y*N.y; L = G - a*B.x - b*B.y; R = G + a*B.x - b*B.y; }}
+        velocities {{ G = ux*N.x + uy*N.y; }}
+        bodies {{ Block {{ frame: B, centre: G, mass: m, inertia: [J, J, J] }} }}
+        loads {{ gravity: -g*N.y; }}
+        kinematics {{ d(q)/dt = w; }}
+        contacts {{
+            left {{ point: L of Block, normal: N.y, gap: dot(position(L), N.y) }},
+            right {{ point: R of Block, normal: N.y, gap: dot(position(R), N.y) }}
+        }}",
+        y = 0.55 / metres
+    )
+}
+
+/// Whether two contacts are struck together does not depend on the unit of a coordinate.
+#[test]
+fn rocking_does_not_depend_on_the_unit_of_places() {
+    let folder = std::env::temp_dir().join(format!("hodograph-units-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut motions: Vec<Ended> = Vec::new();
+    for (unit, metres) in [("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("pm", 1e-12), ("km", 1e3)] {
+        let path = folder.join(format!("{unit}.mech"));
+        std::fs::write(&path, rocking(unit, metres)).unwrap();
+        let block = NumericMechanism::read(&path).unwrap();
+        let start =
+            Start { coordinates: vec![0.0, 0.55 / metres, 1e-4], speeds: vec![0.0; 3], inputs: Vec::new() };
+        motions.push(follow(&block, &start, surface(0.7, 0.3, Law::Poisson), 1.0));
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    let [one, others @ ..] = &motions[..] else { unreachable!() };
+    assert!(one.events.len() > 20 && one.error.is_none(), "{:?}", one.names());
+    for other in others {
+        assert!(other.error.is_none(), "{:?}", other.error);
+        assert_eq!(list(one), list(other));
+        for (a, b) in one.events.iter().zip(&other.events) {
+            assert!((a.time - b.time).abs() < 1e-9, "{} {} {}", a.kind.name(), a.time, b.time);
+        }
     }
 }

@@ -137,6 +137,31 @@ fn bad_lines_are_answered_and_the_next_is_solved() {
         (with(&[("w", block(json!(0.5), json!(0), 9))]), "bad_json"),
         (with(&[("w", block(json!(0), json!(0), 8))]), "bad_json"),
         (with(&[("w", json!([[0, 0, [-1, 0, 0, 0, 1, 0, 0, 0, 1]]]))]), "not_positive_semidefinite"),
+        (with(&[("name", json!(7))]), "bad_json"),
+        (with(&[("w", json!([[0, 0, [1, 0.5, 0, -0.5, 1, 0, 0, 0, 1]]]))]), "not_positive_semidefinite"),
+        (with(&[("w", json!([[0, 0, [1, 2, 0, 2, 1, 0, 0, 0, 1]]]))]), "not_positive_semidefinite"),
+        // each pair of entries is possible, and all together are not
+        (
+            with(&[("w", json!([[0, 0, [1, 0.9, 0.9, 0.9, 1, -0.9, 0.9, -0.9, 1]]]))]),
+            "not_positive_semidefinite",
+        ),
+        // the block 0, 1 is given, and its transpose is not
+        (
+            with(&[
+                ("contacts", json!(2)),
+                ("mu", json!([0.5, 0.5])),
+                ("q", json!([-1, 0, 0.1, -1, 0, 0.1])),
+                (
+                    "w",
+                    json!([
+                        [0, 0, [1, 0, 0, 0, 1, 0, 0, 0, 1]],
+                        [1, 1, [1, 0, 0, 0, 1, 0, 0, 0, 1]],
+                        [0, 1, [0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5]]
+                    ]),
+                ),
+            ]),
+            "not_positive_semidefinite",
+        ),
         (case().to_string().replace("0.1]", "1e999]"), "not_finite"),
         (case().to_string().replace("\"mu\"", "\"my\""), "missing_field"),
         (with(&[("slip", json!([[0, 0]]))]), "bad_json"),

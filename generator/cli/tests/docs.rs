@@ -166,15 +166,18 @@ fn every_command_and_kind_is_documented() {
         assert!(cli.contains(&format!("| `{name}` |")), "{name}");
     }
     // Those of parameters and slices are told in other words, those of lasting contact are events.
-    let untold = [
-        Cause::WrongLength,
-        Cause::UnknownName,
-        Cause::SingularParameters,
-        Cause::ImpactWithoutCollision,
-        Cause::NoMode,
-    ];
+    let untold = [Cause::WrongLength, Cause::UnknownName, Cause::ImpactWithoutCollision, Cause::NoMode];
     let causes = Cause::ALL.iter().filter(|cause| !untold.contains(cause)).map(|cause| cause.name());
-    let own = ["bad_json", "missing_field", "unknown_name", "unsolved", "unfinished", "inconsistent_state"];
+    let own = [
+        "bad_json",
+        "missing_field",
+        "unknown_name",
+        "unsolved",
+        "unfinished",
+        "failed_motion",
+        "not_found",
+        "inconsistent_state",
+    ];
     for kind in own.into_iter().chain(causes) {
         assert!(json.contains(&format!("| `{kind}` |")), "{kind}");
     }

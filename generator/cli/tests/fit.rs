@@ -112,6 +112,7 @@ fn wrong_rows_do_not_decide_with_robust_losses() {
 fn data_that_are_wrong_are_refused_at_their_place() {
     for (data, words) in [
         ("t,z\n0,0.1\n0.1,x\n", "line 3: `x` in the column `z`"),
+        ("t,z\n0,\n0.1,0.1\n", "line 2: a cell is empty in the first row of trajectory 1"),
         ("t,z\n0,0.1\n0,0.1\n", "line 3: the time 0 does not follow 0"),
         ("t,z [mm]\n0,100\n0.1,90\n", "the model counts it in m"),
         ("t,height\n0,0.1\n0.1,0.09\n", "the column `height`"),

@@ -32,6 +32,11 @@ fn a_rimless_wheel_has_its_multiplier() {
     assert!((number(&other["period"]) - number(&motion["period"])).abs() < 1e-10, "{other}");
     let none = hodograph(&[&call[..], &surface[..], &["--segments", "0"]].concat(), "");
     assert!(none.code == 2 && none.stderr.contains("at least one segment"), "{}", none.stderr);
+    // an error of the search is an object in JSON, and a sentence beside a table
+    let waits = [&call[..], &surface[..], &["--longest", "0.01"]].concat();
+    assert_eq!(hodograph(&waits, "").error_kind(), "not_found");
+    let told = hodograph(&[&waits[..], &["--format", "table"]].concat(), "");
+    assert!(told.code == 1 && told.stderr.contains("does not return within 0.01 s"), "{}", told.stderr);
     let table = hodograph(&[&call[..], &surface[..], &["--format", "table"]].concat(), "");
     assert!(table.stdout.contains("multipliers") && table.stdout.contains("yes"), "{}", table.stdout);
     let wrong = ["orbit", &path, "--return", "bounce:second", "--state", &state];

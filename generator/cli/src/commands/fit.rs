@@ -130,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 pub(crate) fn stop(error: FitError) -> Stop {
     match error {
         FitError::BadRequest(message) => Stop::Call(message),
-        error => Stop::Fault(error.to_string()),
+        error => Failure::new(Kind::FailedMotion, error.to_string()).into(),
     }
 }
 

@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn stop(error: GradientError) -> Stop {
     match error {
         GradientError::BadRequest(message) => Stop::Call(format!("--at: {message}")),
-        error => Stop::Fault(error.to_string()),
+        error => Failure::new(Kind::FailedMotion, error.to_string()).into(),
     }
 }
 

@@ -65,7 +65,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// An error object for mistakes in the state or the names; [`Stop::Fault`] if no periodic motion is found.
+/// An error object for mistakes in the state or the names, and if no periodic motion is found.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     arguments.motion.form.write(
@@ -106,7 +106,10 @@ fn stop(error: OrbitError) -> Stop {
         OrbitError::BadRequest(message) | OrbitError::Gradient(GradientError::BadRequest(message)) => {
             Stop::Call(message)
         }
-        error => Stop::Fault(error.to_string()),
+        OrbitError::NoReturn(_) | OrbitError::NotFound(_) => {
+            Failure::new(Kind::NotFound, error.to_string()).into()
+        }
+        error => Failure::new(Kind::FailedMotion, error.to_string()).into(),
     }
 }
 

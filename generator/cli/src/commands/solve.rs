@@ -50,7 +50,7 @@ pub struct Arguments {
     #[arg(long, value_name = "m/s", value_parser = positive)]
     pub threshold: Option<f64>,
     /// `exact`: also the state at these normal impulses, N s, which may be beyond the end of the collision
-    #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     pub at: Vec<f64>,
     #[command(flatten)]
     pub characteristics: CharacteristicsArgument,
@@ -84,6 +84,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("it must be a number greater than 0".to_owned()),
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("it must be a finite number".to_owned()),
     }
 }
 

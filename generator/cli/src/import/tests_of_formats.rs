@@ -71,6 +71,18 @@ fn free_bodies_start_at_their_poses() {
     assert!(notes.is_empty() && !model.contains("inputs"), "{notes}\n{model}");
 }
 
+/// Two bodies of one name are one mistake.
+#[test]
+fn a_name_of_two_bodies_is_told_once() {
+    let body = |z: u32| {
+        format!(
+            "<body name=\"arm\" pos=\"0 0 {z}\"><joint name=\"j{z}\" type=\"hinge\"/><geom type=\"sphere\" size=\"0.1\"/></body>"
+        )
+    };
+    let said = refused(&mjcf(&format!("{}{}", body(1), body(2)), ""), "m.xml");
+    assert!(said.contains("a second link `arm`") && said.lines().count() == 1, "{said}");
+}
+
 #[test]
 fn elements_of_mjcf_without_counterpart_are_reported() {
     let equality = "<equality><connect name=\"loop\" body1=\"arm\" anchor=\"0 0 0\"/></equality>";

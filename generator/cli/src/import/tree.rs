@@ -125,14 +125,17 @@ pub fn build(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Stri
         let (parent, child) = (end("parent", &joint.parent), end("child", &joint.child));
         let (Some(parent), Some(child)) = (parent, child) else { continue };
         if let Some(&other) = carried_by.get(&child) {
-            problems.push(format!(
-                "{at}: joint `{}` carries link `{}`, which joint `{}` ({}) carries already: a URDF is a tree, so cut \
-                 the loop here and close it by constraints in the model",
-                joint.name,
-                joint.child,
-                document.joints[other].name,
-                document.joints[other].at
-            ));
+            // two links of one name are told already
+            if document.links.iter().filter(|link| link.name == joint.child).count() == 1 {
+                problems.push(format!(
+                    "{at}: joint `{}` carries link `{}`, which joint `{}` ({}) carries already: links form a tree, so \
+                     cut the loop here and close it by constraints in the model",
+                    joint.name,
+                    joint.child,
+                    document.joints[other].name,
+                    document.joints[other].at
+                ));
+            }
             continue;
         }
         carried_by.insert(child, index);

@@ -19,6 +19,10 @@ pub enum Kind {
     Unsolved,
     /// a method other than `exact` did not converge
     Unfinished,
+    /// a motion that is to be differentiated, repeated or fitted ends with an error, or has no derivative
+    FailedMotion,
+    /// there is no periodic motion near the start
+    NotFound,
     /// the coordinates contradict each other
     InconsistentState,
     /// a cause of the runtime, by its name
@@ -33,6 +37,8 @@ impl Kind {
             Self::UnknownName => "unknown_name",
             Self::Unsolved => "unsolved",
             Self::Unfinished => "unfinished",
+            Self::FailedMotion => "failed_motion",
+            Self::NotFound => "not_found",
             Self::InconsistentState => "inconsistent_state",
             Self::Of(cause) => cause.name(),
         }

@@ -239,9 +239,13 @@ fn trajectory(
     let first = &rows[0];
     let mut state = [start.coordinates, start.speeds].concat();
     for (&index, &number) in states.iter().zip(&first.numbers) {
-        if !number.is_nan() {
-            state[index] = number;
+        if number.is_nan() {
+            return Err(format!(
+                "line {}: a cell is empty in the first row of trajectory {}, which is its start state",
+                first.line, first.trajectory
+            ));
         }
+        state[index] = number;
     }
     let count = start.coordinates.len();
     mechanism.normalise(&mut state[..count]).map_err(|error| format!("line {}: {error}", first.line))?;
