@@ -10,7 +10,7 @@ use hodograph_simulation::MOST_FRICTION;
 use hodograph_simulation::contact_problem::{
     MOST_ENUMERATED, Problem, Solution, Solutions, Unsolved, enumerate, natural_residual, solve,
 };
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector2};
 use serde::Serialize;
 
 use crate::json::fields::number;
@@ -30,6 +30,9 @@ const INDEFINITE: f64 = 1e-6;
 
 /// Eigenvalues are looked at of matrices of so many contacts.
 const MAX_DECOMPOSED: usize = 60;
+
+/// After so many iterations eigenvalues are not looked at.
+const MOST_ITERATIONS: usize = 10_000;
 
 /// The largest number of contacts; more would need more than a gigabyte.
 const MAX_CONTACTS: usize = 2000;
@@ -291,7 +294,7 @@ fn of_no_mechanism(w: &DMatrix<f64>) -> Option<String> {
     if let Some((i, j)) = pairs().find(|&(i, j)| w[(i, j)].abs() > (1.0 + INDEFINITE) * size(i, j)) {
         return Some(format!("{} is {}, more than its diagonal entries allow", entries(i, j), w[(i, j)]));
     }
-    if n > 3 * MAX_DECOMPOSED {
+    if n == 0 || n > 3 * MAX_DECOMPOSED {
         return None;
     }
     // of the matrix whose diagonal is 1, so that units do not matter
@@ -299,7 +302,8 @@ fn of_no_mechanism(w: &DMatrix<f64>) -> Option<String> {
     let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (w[(i, j)] + w[(j, i)]) / scale(i) / scale(j));
     let asymmetry =
         pairs().fold(0.0_f64, |most, (i, j)| most.max((w[(i, j)] - w[(j, i)]).abs() / scale(i) / scale(j)));
-    let least = scaled.symmetric_eigenvalues().iter().fold(0.0_f64, |least, value| least.min(*value));
+    let decomposed = SymmetricEigen::try_new(scaled, f64::EPSILON, MOST_ITERATIONS)?;
+    let least = decomposed.eigenvalues.iter().fold(0.0_f64, |least, value| least.min(*value));
     (least < -(INDEFINITE + asymmetry) * n as f64).then(|| "`w` has a negative eigenvalue".to_owned())
 }
 
