@@ -8,14 +8,14 @@
 
 use hodograph::State;
 
-use crate::event_functions::LIFTED;
-use crate::forces::{JAM, Margins, margins};
+use crate::closed::forces::{JAM, Margins, margins};
+use crate::closed::phase::{Leaving, Phase, mus};
+use crate::closed::torques::Turning;
+use crate::events::event_functions::LIFTED;
+use crate::integration::motion::{Evaluation, Failure, Motion, WORKS};
 #[cfg(feature = "serde")]
-use crate::front::Front;
-use crate::motion::{Evaluation, Failure, Motion, WORKS};
-use crate::phase::{Leaving, Phase, mus};
-use crate::torques::Turning;
-use crate::transition::Transition;
+use crate::state::front::Front;
+use crate::state::transition::Transition;
 use crate::{ContactForces, ErrorKind, Event, Progress, Simulation, SimulationError};
 
 /// A function whose zero is an event: it is positive as long as the modes of all contacts are constant.

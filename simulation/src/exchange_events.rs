@@ -3,14 +3,14 @@
 
 use hodograph::State;
 
-use crate::drift;
-use crate::event_functions::SIZE;
+use crate::closed::phase::{Closed, Leaving, Phase};
+use crate::closed::scales::SIZE;
 use crate::exchange::Frozen;
-use crate::front::Front;
-use crate::mode_changes::Ending;
-use crate::motion::Failure;
-use crate::phase::{Closed, Leaving, Phase};
-use crate::transition::Transition;
+use crate::integration::drift;
+use crate::integration::motion::Failure;
+use crate::modes::mode_changes::Ending;
+use crate::state::front::Front;
+use crate::state::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
 /// If the indicator of slip is negative, slip below this part of the greatest speeds so far ends; greater

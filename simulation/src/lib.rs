@@ -29,85 +29,40 @@
 //! # Ok::<(), hodograph_simulation::SimulationError>(())
 //! ```
 
-mod angles;
-mod broad_phase;
-mod check;
-mod closed_contacts;
-mod commit;
-mod contact_law;
+mod closed;
 pub mod contact_problem;
-mod drift;
-mod drive;
-mod driven_inputs;
-mod ends;
-mod energy;
-mod error;
-mod event;
-mod event_functions;
-mod event_handling;
-mod event_location;
-mod event_time;
+mod events;
 mod exchange;
 mod exchange_events;
-mod force_functions;
-mod forces;
-mod front;
-mod given_law;
-mod impact_at_once;
-mod impact_without_collision;
-mod impacts;
-mod lengths;
-mod look_ahead;
-mod lzb;
+mod impact;
+mod integration;
+mod interface;
 mod many;
-mod mode_changes;
-mod mode_selection;
-mod motion;
-mod options;
+mod modes;
 mod outcome_set;
-mod pair;
-mod past_jam;
-mod phase;
-mod poisson_at_once;
 pub mod random;
-mod rattling;
-mod scales;
-mod scheduled_events;
-mod settled_direction;
-mod settled_slip;
-mod signed_slip;
 mod simulation;
-mod simultaneous_impacts;
-mod single_impact;
-mod singular;
-mod slip_direction;
-mod slip_end;
-mod smooth_parts;
-mod stage_values;
-mod start;
-pub mod stepper;
-mod time_step;
-mod torque_modes;
-mod torques;
-mod transition;
-mod watched;
+mod state;
 
 #[cfg(feature = "serde")]
 pub use crate::exchange::Saved;
 pub use crate::{
-    contact_law::{ContactLaw, Restitution, Sliding, SpeedFunction},
-    drift::close_loops,
-    drive::{Controller, Drive, InputFunction, Samples},
-    energy::EnergyAccount,
-    error::{ErrorKind, SimulationError},
-    event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
+    closed::{pair::MOST_FRICTION, phase::ContactPhase},
     exchange::{Indicator, IndicatorKind},
-    given_law::GivenLaw,
+    integration::{drift::close_loops, stepper},
+    interface::{
+        contact_law::{ContactLaw, Restitution, Sliding, SpeedFunction},
+        drive::{Controller, Drive, InputFunction, Samples},
+        error::{ErrorKind, SimulationError},
+        event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
+        given_law::GivenLaw,
+        options::{EventFunction, ImpactsAtOnce, Options},
+    },
     many::{Batch, Case, Outcome, StopAt, Watch, digest, simulate_many},
-    options::{EventFunction, ImpactsAtOnce, Options},
     outcome_set::{End, OutcomeSet, Range},
-    pair::MOST_FRICTION,
-    phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},
-    smooth_parts::{ClosedPart, Guard, SmoothPart},
+    state::{
+        energy::EnergyAccount,
+        smooth_parts::{ClosedPart, Guard, SmoothPart},
+    },
 };

@@ -5,18 +5,18 @@ use std::collections::VecDeque;
 use hodograph::{ComponentKind, Contacts, State};
 use nalgebra::Vector3;
 
-use crate::angles::Angles;
-use crate::check::check;
-use crate::front::Front;
-use crate::lengths::Lengths;
-use crate::motion::{Failure, WORKS};
-use crate::pair::Pair;
-use crate::phase::{ContactPhase, Modes};
-use crate::scales::Scales;
-use crate::smooth_parts::{Parts, SmoothPart};
-use crate::stepper::Step;
-use crate::torques::{Lacking, Torque, Turning, WithTorques, torques};
-use crate::transition::Transition;
+use crate::closed::angles::Angles;
+use crate::closed::lengths::Lengths;
+use crate::closed::pair::Pair;
+use crate::closed::phase::{ContactPhase, Modes};
+use crate::closed::scales::Scales;
+use crate::closed::torques::{Lacking, Torque, Turning, WithTorques, torques};
+use crate::integration::motion::{Failure, WORKS};
+use crate::integration::stepper::Step;
+use crate::state::check::check;
+use crate::state::front::Front;
+use crate::state::smooth_parts::{Parts, SmoothPart};
+use crate::state::transition::Transition;
 use crate::{Drive, EnergyAccount, ErrorKind, Event, EventKind, Options, SimulationError};
 
 /// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same
