@@ -263,12 +263,7 @@ fn the_simulation_imports_downwards_only() {
 
 #[test]
 fn no_files_import_each_other() {
-    let sources = [
-        "generator/src",
-        "generator/emit/src",
-        "generator/cli/src",
-        "generator/interpreter/src",
-    ];
+    let sources = ["generator/src", "generator/emit/src", "generator/cli/src", "generator/interpreter/src"];
     for source in sources {
         let wrong = Imports::read(&repository().join(source)).circles();
         assert!(wrong.is_empty(), "{source}:\n{}", wrong.join("\n"));

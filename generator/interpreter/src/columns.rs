@@ -18,7 +18,7 @@ use crate::contacts::{COLLISION_NEEDS, NO_COLLISION};
 use crate::routines::{OfContact, Request};
 
 /// So many rows are one task for a core.
-const TASK: usize = 16 * LANES;
+const TASK: usize = 11 * LANES;
 
 /// So many collisions are solved together.
 const TOGETHER: usize = 8 * LANES;

@@ -2,26 +2,26 @@
 
 use std::collections::HashMap;
 
-use super::steps::{Code, Draft, Place, Term, Varying};
+use super::steps::{Code, Draft, Place, Sign, Term, Varying};
 
 /// What a step adds to one of its operands: which of them is the sum so far, and the term. A factor of 1 leaves the bits of
 /// the other, and -0 those of what is added to it.
 fn as_term(draft: &Draft) -> Vec<(Place, Term<Place>)> {
-    let term = |a, b, minus, turned| Term { factors: [a, b], minus, turned };
+    let term = |a, b, sign| Term { factors: [a, b], sign };
     let one = Place::Number(1.0);
     match (draft.code, draft.operands) {
         (Code::AddSS | Code::AddSU, [Some(a), Some(b), _]) => {
-            vec![(a, term(b, one, false, false)), (b, term(a, one, false, false))]
+            vec![(a, term(b, one, Sign::Plus)), (b, term(a, one, Sign::Plus))]
         }
         (Code::SubSS | Code::SubSU | Code::SubUS, [Some(a), Some(b), _]) => {
-            vec![(a, term(b, one, true, false)), (b, term(a, one, false, true))]
+            vec![(a, term(b, one, Sign::Minus)), (b, term(a, one, Sign::MinusSum))]
         }
         (Code::MulSS | Code::MulSU, [Some(a), Some(b), _]) => {
-            vec![(Place::Number(-0.0), term(a, b, false, false))]
+            vec![(Place::Number(-0.0), term(a, b, Sign::Plus))]
         }
-        (code, [Some(a), Some(b), Some(c)]) if code.is_mul_add() => vec![(c, term(a, b, false, false))],
-        (code, [Some(a), Some(b), Some(c)]) if code.is_mul_sub() => vec![(c, term(a, b, false, true))],
-        (code, [Some(a), Some(b), Some(c)]) if code.is_neg_mul_add() => vec![(c, term(a, b, true, false))],
+        (code, [Some(a), Some(b), Some(c)]) if code.is_mul_add() => vec![(c, term(a, b, Sign::Plus))],
+        (code, [Some(a), Some(b), Some(c)]) if code.is_mul_sub() => vec![(c, term(a, b, Sign::MinusSum))],
+        (code, [Some(a), Some(b), Some(c)]) if code.is_neg_mul_add() => vec![(c, term(a, b, Sign::Minus))],
         _ => Vec::new(),
     }
 }

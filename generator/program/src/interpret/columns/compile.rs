@@ -17,8 +17,8 @@ pub struct Columns {
     pub(super) runs: Vec<Run>,
     /// the terms of all chains: their factors are in these slots
     pub(super) terms: Vec<Term<Factor>>,
-    /// slots that hold the same number for all states
-    pub(super) same: Vec<(u32, Same)>,
+    /// the numbers of chains that are the same for all states
+    pub(super) same: Vec<Same>,
     /// number of slots that the steps need
     pub(super) slots: usize,
     /// values that are the same for all states: the value of the program, and its number

@@ -14,6 +14,7 @@ use hodograph_model::arithmetic::{call, call2, mul_add};
 pub struct Scratch {
     slots: Vec<Slot>,
     uniforms: Vec<f64>,
+    same: Vec<f64>,
     /// the results of a block
     pub results: Vec<Slot>,
     /// why states of the block have no results
@@ -35,15 +36,21 @@ impl Scratch {
         for &(place, uniform) in &columns.uniform_results {
             results[place] = Slot::of(uniforms[uniform as usize]);
         }
-        let mut slots = vec![ZERO; columns.slots];
-        for &(slot, number) in &columns.same {
-            let number = match number {
-                Same::Uniform(uniform) => uniforms[uniform as usize],
-                Same::Number(number) => number,
-            };
-            slots[slot as usize] = Slot::of(number);
+        let slots = vec![ZERO; columns.slots];
+        let number = |same: &Same| match *same {
+            Same::Uniform(uniform) => uniforms[uniform as usize],
+            Same::Number(number) => number,
+        };
+        let same = columns.same.iter().map(number).collect();
+        Scratch {
+            slots,
+            uniforms,
+            same,
+            results,
+            failures: [None; LANES],
+            failed: [NONE; LANES],
+            finite: ZERO,
         }
-        Scratch { slots, uniforms, results, failures: [None; LANES], failed: [NONE; LANES], finite: ZERO }
     }
 }
 
@@ -91,7 +98,7 @@ impl Task<'_> {
                     }
                 }
                 Code::Chain => {
-                    Numbers { slots: &mut scratch.slots, uniforms: &scratch.uniforms }
+                    Numbers { slots: &mut scratch.slots, uniforms: &scratch.same }
                         .chain(steps, &columns.terms);
                 }
                 Code::Result => steps.iter().for_each(|step| scratch.keep(step)),

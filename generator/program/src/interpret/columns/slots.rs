@@ -9,8 +9,8 @@ pub struct Slotted {
     pub runs: Vec<Run>,
     /// of all chains
     pub terms: Vec<Term<Factor>>,
-    /// slots with the same number for all states
-    pub same: Vec<(u32, Same)>,
+    /// numbers of chains that are the same for all states
+    pub same: Vec<Same>,
     /// number of slots
     pub slots: usize,
 }
@@ -21,7 +21,7 @@ struct Slots {
     held: HashMap<Varying, u32>,
     free: Vec<u32>,
     count: u32,
-    /// of numbers that are the same for all states, by their bits or by their index
+    /// the places of numbers that are the same for all states, by their bits or by their index
     same: HashMap<(bool, u64), u32>,
 }
 
@@ -41,20 +41,20 @@ impl Slots {
         self.free.extend(self.held.remove(&varying));
     }
 
-    /// The slot of an operand of a chain.
-    fn of(&mut self, place: Place, same: &mut Vec<(u32, Same)>) -> u32 {
+    /// The place of an operand of a chain.
+    fn of(&mut self, place: Place, same: &mut Vec<Same>) -> Factor {
         let (key, number) = match place {
-            Place::Varying(varying) => return self.held.get(&varying).copied().unwrap_or(0),
+            Place::Varying(varying) => {
+                return Factor::in_slot(self.held.get(&varying).copied().unwrap_or(0));
+            }
             Place::Uniform(uniform) => ((true, u64::from(uniform)), Same::Uniform(uniform)),
             Place::Number(number) => ((false, number.to_bits()), Same::Number(number)),
         };
-        if let Some(slot) = self.same.get(&key) {
-            return *slot;
-        }
-        let slot = self.new_slot();
-        self.same.insert(key, slot);
-        same.push((slot, number));
-        slot
+        let next = same.len() as u32;
+        Factor::same(*self.same.entry(key).or_insert_with(|| {
+            same.push(number);
+            next
+        }))
     }
 }
 
@@ -72,14 +72,13 @@ pub fn with_slots(drafts: &[Draft]) -> Slotted {
         let [a, b, c] = if draft.code == Code::Chain {
             let first = terms.len() as u32;
             for term in &draft.terms {
-                let factors = term.factors.map(|place| Factor {
-                    slot: slots.of(place, &mut same),
-                    is_same: !matches!(place, Place::Varying(_)),
-                });
-                terms.push(Term { factors, minus: term.minus, turned: term.turned });
+                let mut factors = term.factors.map(|place| slots.of(place, &mut same));
+                // what is the same for all states goes last
+                factors.sort_by_key(|factor| factor.is_same());
+                terms.push(Term { factors, sign: term.sign });
             }
-            let sum = draft.operands[0].map_or(0, |place| slots.of(place, &mut same));
-            [first, draft.terms.len() as u32, sum]
+            let sum = draft.operands[0].map_or(Factor::in_slot(0), |place| slots.of(place, &mut same));
+            [first, draft.terms.len() as u32, sum.0]
         } else {
             draft.operands.map(|place| match place {
                 Some(Place::Varying(varying)) => slots.held.get(&varying).copied().unwrap_or(0),

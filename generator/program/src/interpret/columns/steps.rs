@@ -37,7 +37,7 @@ pub enum Code {
     NegMulAddSSU,
     NegMulAddSUU,
     NegMulAddUUS,
-    /// the terms from `a` on, `b` of them, added to `c`
+    /// the terms from `a` on, `b` of them, added to the [`Factor`] `c`
     Chain,
     Call(Function),
     CallSS(Function),
@@ -86,22 +86,53 @@ pub struct Step {
     pub c: u32,
 }
 
-/// A product that is added to the sum of a chain.
+/// A product that a chain adds to its sum.
 #[derive(Clone, Copy, Debug)]
 pub struct Term<P> {
+    /// of factors in a chain with slots, those that are the same for all states stand last
     pub factors: [P; 2],
-    /// the product is subtracted
-    pub minus: bool,
-    /// the sum so far changes its sign
-    pub turned: bool,
+    pub sign: Sign,
 }
 
-/// A factor of a term.
+/// How a chain goes on with a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sign {
+    /// sum + product
+    Plus,
+    /// sum - product
+    Minus,
+    /// product - sum
+    MinusSum,
+}
+
+/// An operand of a chain: a slot, or a number that is the same for all states.
 #[derive(Clone, Copy, Debug)]
-pub struct Factor {
-    pub slot: u32,
-    /// all states have the same number: one group of them is read
-    pub is_same: bool,
+pub struct Factor(pub u32);
+
+impl Factor {
+    const SAME: u32 = 1 << 31;
+
+    /// The slot of this index.
+    pub fn in_slot(slot: u32) -> Self {
+        Self(slot)
+    }
+
+    /// The number of this index among those that are the same for all states.
+    pub fn same(number: u32) -> Self {
+        Self(number | Self::SAME)
+    }
+
+    /// Whether it is the same for all states.
+    #[inline(always)]
+    pub fn is_same(self) -> bool {
+        self.0 & Self::SAME != 0
+    }
+
+    /// Its index among slots or among numbers.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        (self.0 & !Self::SAME) as usize
+    }
 }
 
 /// A number that is the same for all states.
