@@ -51,9 +51,12 @@ pub fn evaluate_rows(
         use rayon::iter::{IndexedParallelIterator, ParallelIterator};
         use rayon::slice::ParallelSliceMut;
         let tasks = numbers.par_chunks_mut(TASK * columns.len()).zip(failures.par_chunks_mut(TASK));
-        tasks.enumerate().for_each(|(task, (numbers, failures))| {
-            columns.by_rows(table, task * TASK..(task + 1) * TASK, numbers, failures);
-        });
+        tasks.enumerate().for_each_init(
+            || columns.work_space(),
+            |scratch, (task, rows)| {
+                columns.by_rows_in(scratch, table, task * TASK..(task + 1) * TASK, rows);
+            },
+        );
         return;
     }
     columns.by_rows(table, 0..table.rows, numbers, failures);

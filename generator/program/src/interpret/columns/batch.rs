@@ -34,12 +34,26 @@ impl<'a> Block<'a> {
 impl Columns {
     /// Evaluates the states of these rows and passes the results to `with`, block by block. Rows beyond the
     /// table are ignored.
-    pub fn for_each_block(&self, table: &Table<'_>, rows: Range<usize>, mut with: impl FnMut(Block<'_>)) {
-        let mut scratch = Scratch::new(self);
+    pub fn for_each_block(&self, table: &Table<'_>, rows: Range<usize>, with: impl FnMut(Block<'_>)) {
+        self.for_each_block_in(&mut self.work_space(), table, rows, with);
+    }
+
+    /// What an evaluation needs; it can be used again with the same columns and parameters.
+    pub fn work_space(&self) -> Scratch {
+        Scratch::new(self)
+    }
+
+    fn for_each_block_in(
+        &self,
+        scratch: &mut Scratch,
+        table: &Table<'_>,
+        rows: Range<usize>,
+        mut with: impl FnMut(Block<'_>),
+    ) {
         let end = rows.end.min(table.rows);
         for first in (rows.start..end).step_by(LANES) {
             let count = (end - first).min(LANES);
-            Task { columns: self, table, first, count, scratch: &mut scratch }.run();
+            Task { columns: self, table, first, count, scratch: &mut *scratch }.run();
             with(Block { first, count, results: &scratch.results, failures: &scratch.failures });
         }
     }
@@ -53,8 +67,19 @@ impl Columns {
         numbers: &mut [f64],
         failures: &mut [Option<Failed>],
     ) {
+        self.by_rows_in(&mut self.work_space(), table, rows, (numbers, failures));
+    }
+
+    /// [`Self::by_rows`] in a work space of these columns.
+    pub fn by_rows_in(
+        &self,
+        scratch: &mut Scratch,
+        table: &Table<'_>,
+        rows: Range<usize>,
+        (numbers, failures): (&mut [f64], &mut [Option<Failed>]),
+    ) {
         let start = rows.start;
-        self.for_each_block(table, rows, |block| {
+        self.for_each_block_in(scratch, table, rows, |block| {
             let at = block.first - start;
             let from = numbers.get_mut(at * self.len..(at + block.count) * self.len).unwrap_or(&mut []);
             for result in 0..self.len {

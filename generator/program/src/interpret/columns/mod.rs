@@ -25,6 +25,7 @@ mod table;
 pub use batch::Block;
 pub use compile::Columns;
 pub use lanes::LANES;
+pub use run::Scratch;
 pub use table::{Column, Table};
 
 #[cfg(test)]

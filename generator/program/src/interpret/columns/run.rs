@@ -30,7 +30,7 @@ const NONE: (u32, bool) = (u32::MAX, false);
 const ZERO: Slot = Slot::of(0.0);
 
 impl Scratch {
-    pub fn new(columns: &Columns) -> Self {
+    pub(super) fn new(columns: &Columns) -> Self {
         let uniforms: Vec<f64> = columns.uniforms.iter().map(|(_, number)| *number).collect();
         let mut results = vec![ZERO; columns.len];
         for &(place, uniform) in &columns.uniform_results {
