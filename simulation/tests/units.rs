@@ -1,8 +1,8 @@
 //! The same motion in millimetres, grams and milliseconds has the same events.
 
-use crate::many::{Ended, Start, follow, model, surface, with_parameters};
+use crate::many::{Ended, Start, follow, model, numeric, surface, with_parameters};
 use hodograph::{ComponentKind, Law, Mechanism};
-use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
+use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 
 /// How many of the small units one of these is: lengths, masses and times are a thousand times the number.
@@ -119,18 +119,13 @@ fn rocking(unit: &str, metres: f64) -> String {
 /// Whether two contacts are struck together does not depend on the unit of a coordinate.
 #[test]
 fn rocking_does_not_depend_on_the_unit_of_places() {
-    let folder = std::env::temp_dir().join(format!("hodograph-units-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
     let mut motions: Vec<Ended> = Vec::new();
     for (unit, metres) in [("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("pm", 1e-12), ("km", 1e3)] {
-        let path = folder.join(format!("{unit}.mech"));
-        std::fs::write(&path, rocking(unit, metres)).unwrap();
-        let block = NumericMechanism::read(&path).unwrap();
+        let block = numeric(&format!("block-{unit}"), &rocking(unit, metres));
         let start =
             Start { coordinates: vec![0.0, 0.55 / metres, 1e-4], speeds: vec![0.0; 3], inputs: Vec::new() };
         motions.push(follow(&block, &start, surface(0.7, 0.3, Law::Poisson), 1.0));
     }
-    std::fs::remove_dir_all(&folder).unwrap();
     let [one, others @ ..] = &motions[..] else { unreachable!() };
     assert!(one.events.len() > 20 && one.error.is_none(), "{:?}", one.names());
     for other in others {
@@ -139,5 +134,45 @@ fn rocking_does_not_depend_on_the_unit_of_places() {
         for (a, b) in one.events.iter().zip(&other.events) {
             assert!((a.time - b.time).abs() < 1e-9, "{} {} {}", a.kind.name(), a.time, b.time);
         }
+    }
+}
+
+/// A particle on a plate that shakes leaves it and strikes it again at times that do not depend on how slowly it approached
+/// at the start: that is no scale of the motion.
+#[test]
+fn an_approach_of_rounding_is_no_scale() {
+    let (amplitude, rate, g) = (0.1_f64, 12.0_f64, 9.81_f64);
+    let shaken = numeric(
+        "shaken",
+        "mechanism Shaken;
+        parameters { m: kg = 2, A: m = 0.1, w: rad/s = 12, g: m/s^2 = 9.81 }
+        coordinates { y: m }
+        speeds { v: m/s }
+        definitions { plate = A*sin(w*time); }
+        points { P = O + y*N.y; }
+        particles { Q { point: P, mass: m } }
+        loads { gravity: -g*N.y; }
+        kinematics { d(y)/dt = v; }
+        contacts { strike { point: P, against: velocity d(plate)/dt*N.y, normal: N.y, gap: y - plate } }",
+    );
+    let leaves = (g / (amplitude * rate * rate)).asin() / rate;
+    let (y, v) = (amplitude * (rate * leaves).sin(), amplitude * rate * (rate * leaves).cos());
+    let gap = |t: f64| y + v * t - 0.5 * g * t * t - amplitude * (rate * (leaves + t)).sin();
+    let (mut early, mut late) = (0.1, 0.4);
+    assert!(gap(early) > 0.0 && gap(late) < 0.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (early + late);
+        if gap(middle) > 0.0 { early = middle } else { late = middle }
+    }
+    for approach in [0.0, 1e-16, 3e-16, 1e-12, 1e-9, 1e-6, 1e-5, 1e-4] {
+        let start =
+            Start { coordinates: vec![0.0], speeds: vec![amplitude * rate - approach], inputs: Vec::new() };
+        let end = follow(&shaken, &start, surface(0.0, 0.0, Law::Newton), 0.4);
+        assert!(end.error.is_none(), "{approach:e}: {:?}", end.error);
+        let time =
+            |kind: &str| end.events.iter().rfind(|event| event.kind.name() == kind).map(|event| event.time);
+        let near = |found: Option<f64>, time: f64| found.is_some_and(|found| (found - time).abs() < 1e-11);
+        assert!(near(time("lift_off"), leaves), "{approach:e}: {:?}", end.names());
+        assert!(near(time("collision"), leaves + early), "{approach:e}: {:?}", end.names());
     }
 }

@@ -19,10 +19,10 @@ const MAX_STATE: usize = 16 << 20;
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct StateArguments {
     /// coordinates, speeds, inputs and the time t by name, as q1=0.3,u1=2 (the rest as in the model); or a
-    /// file with a state, `-` for standard input, or the state as JSON; may be given several times
+    /// file with a state, `-` for standard input, or the state as JSON; may be given several times, each name once
     #[arg(long, value_name = "NAME=NUMBER|FILE|-|JSON", allow_hyphen_values = true)]
     state: Vec<String>,
-    /// parameters by name, as m=3,l=0.4; may be given several times
+    /// parameters by name, as m=3,l=0.4; may be given several times, each name once
     #[arg(long, value_name = "NAME=NUMBER", allow_hyphen_values = true)]
     parameter: Vec<String>,
 }

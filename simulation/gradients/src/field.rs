@@ -47,6 +47,8 @@ pub(crate) struct Field<'m> {
     /// number of directions, of which the last is the motion itself
     pub k: usize,
     by_parameters: Vec<f64>,
+    /// for each direction the relative change of its parameters, the sum of all
+    pub relative: Vec<f64>,
     /// of inputs that do not change, or all of whose samples change
     by_inputs: Vec<f64>,
     sampling: Option<Sampling>,
@@ -98,11 +100,18 @@ impl<'m> Field<'m> {
         let run_time: Vec<usize> =
             (0..model.parameters.len()).filter(|&index| !model.parameters[index].fixed).collect();
         let mut by_parameters = vec![0.0; model.parameters.len() * k];
+        let mut relative = vec![0.0; k];
         let mut by_inputs = vec![0.0; model.inputs.len() * k];
         for (direction, variables) in directions_of.iter().enumerate() {
             for &(by, rate) in variables {
                 match by {
-                    By::Parameter(index) => by_parameters[run_time[index] * k + direction] += rate,
+                    By::Parameter(index) => {
+                        by_parameters[run_time[index] * k + direction] += rate;
+                        let value = mechanism.all_parameters()[run_time[index]];
+                        if value != 0.0 {
+                            relative[direction] += (rate / value).abs();
+                        }
+                    }
                     By::Input(index) => by_inputs[index * k + direction] += rate,
                     _ => {}
                 }
@@ -116,6 +125,7 @@ impl<'m> Field<'m> {
             p: mechanism.count(ComponentKind::Speed),
             k,
             by_parameters,
+            relative,
             by_inputs,
             sampling,
             routines: RefCell::default(),

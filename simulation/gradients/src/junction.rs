@@ -21,6 +21,9 @@ const TANGENT: f64 = 1e-7;
 /// The component of slip perpendicular to the direction in which slip ends may be at most this part of its
 /// terms.
 const TRANSVERSE_SLIP: f64 = 1e-5;
+/// The terms of a derivative by a parameter count as no smaller than this part of what is differentiated, by the parameter: a
+/// mass that does not matter leaves rounding beside rounding.
+const NOTHING: f64 = 1e-9;
 /// The computed speeds after a collision must agree with those of the motion to this part of the greatest.
 const SPEED_AGREEMENT: f64 = 1e-8;
 /// A change below this part of its terms counts as zero.
@@ -282,7 +285,7 @@ impl Field<'_> {
         let own: f64 = (0..p).map(|speed| partial(speed) * by(n + speed)).sum();
         let turning = (0..n).map(by).fold(0.0, f64::max);
         let speed: f64 = (0..3).map(|axis| contact_terms.velocity_size(place, axis, &at.state[n..])).sum();
-        own + turning * speed
+        own + turning * speed + NOTHING * self.relative[d] * speed
     }
 
     /// The relative rates at which closed contacts separate, and sticking ones slip, along the directions:
@@ -315,7 +318,8 @@ impl Field<'_> {
             let (_, gap) = self.gap(mode.contact, at).map_err(Reason::State)?;
             for (d, &left) in gap.iter().enumerate() {
                 let size = (0..self.n).map(|index| sizes[index * self.k + d]).fold(0.0, f64::max);
-                see(mode.contact, d, left, size);
+                let greatest = at.state[..self.n].iter().fold(0.0_f64, |greatest, q| greatest.max(q.abs()));
+                see(mode.contact, d, left, size + NOTHING * self.relative[d] * greatest);
             }
         }
         Ok(worst)

@@ -37,6 +37,26 @@ fn a_rod_tumbles_through_twenty_events() {
     assert!(compared.events == 22 && compared.state < 3e-9 && compared.times < 3e-9, "{compared:?}");
 }
 
+/// A ladder slides down a wall and leaves it: its mass does not matter, and what rounding leaves of that is no error.
+#[test]
+fn a_mass_that_does_not_matter() {
+    let task = Task {
+        mechanism: read("tests/data/many_contacts/ladder.mech"),
+        q: vec![0.8_f64.cos(), 0.8_f64.sin(), 0.8],
+        u: vec![-0.5 * 0.8_f64.sin(), 0.5 * 0.8_f64.cos(), 0.5].iter().map(|u| -u).collect(),
+        mu: 0.2,
+        e: 0.0,
+        law: Law::Newton,
+    };
+    let found = task.forwards(&[By::Parameter(0)], &[0.3, 0.6]);
+    assert!(found.undefined.is_none(), "{:?}", found.undefined);
+    assert!(found.events.iter().any(|event| event.event.kind.name() == "lift_off"));
+    for sample in &found.samples {
+        let derivative = sample.derivative.as_ref().unwrap();
+        assert!(derivative.amax() < 1e-9, "{derivative}");
+    }
+}
+
 /// A cube is tossed onto a table: impacts with friction in space.
 #[test]
 fn a_cube_is_tossed() {

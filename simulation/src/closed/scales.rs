@@ -24,7 +24,7 @@ pub(crate) struct Scales {
     pub slow: f64,
 }
 
-/// A gap below this part of the greatest coordinate counts as closed, and does not define a length; a normal
+/// A gap or a fall below this part of the greatest coordinate counts as closed, and does not define a length; a
 /// velocity below this part of its terms does not define a velocity.
 const TOUCHES: f64 = 1e-9;
 /// The smallest velocity that matters, relative to that of a fall through the length; the height of its rise
@@ -34,7 +34,7 @@ const SEEN: f64 = 1e-6;
 pub(crate) const SIZE: f64 = 5e-3;
 /// The part of the terms of a normal velocity that rounding and projections leave.
 pub(crate) const OWN: f64 = 1e-13;
-/// Points that start closer than this, m, are meant to touch: their gap is not a length of the problem.
+/// Points that start closer than this, m, or fall by less, are meant to touch: that is not a length of the problem.
 const NEAR: f64 = 1e-6;
 
 impl Scales {
@@ -59,7 +59,10 @@ impl Scales {
                 }
             }
             acceleration = acceleration.max(alone.beta.norm());
-            speed = speed.max(alone.velocity.norm());
+            let whole = alone.velocity.norm();
+            if whole > TOUCHES * alone.velocity_size(0, state.speeds) {
+                speed = speed.max(whole);
+            }
             let normal = alone.velocity[0].abs();
             if normal > TOUCHES * alone.normal_size(0, state.speeds) {
                 approach = approach.max(normal);
@@ -72,8 +75,8 @@ impl Scales {
             length = length.max(gaps);
         }
         if !known(length) {
-            // A fall that disappears in the rounding of the place is that of a speed which is zero up to rounding.
-            let resolved = known(fall) && fall > f64::EPSILON * place;
+            // Nor does a fall that is closed: it says nothing of what follows.
+            let resolved = known(fall) && fall > NEAR.max(TOUCHES * place);
             length = if resolved { fall } else { 1.0 };
         }
         // The faster of falling and moving.

@@ -1,7 +1,7 @@
 //! Mechanisms with several contacts, read from their model files, and their motions.
 
 use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 use hodograph_simulation::{Event, EventKind, Options, Progress, Simulation, SimulationError};
 
 /// A model of `tests/data/many_contacts`, or of this package.
@@ -14,6 +14,15 @@ pub fn model(name: &str) -> InterpretedMechanism {
         format!("{root}/../tests/data/many_contacts/{name}.mech")
     };
     InterpretedMechanism::read(path.as_ref()).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The mechanism of a text without a derivation.
+pub fn numeric(name: &str, text: &str) -> NumericMechanism {
+    let path = std::env::temp_dir().join(format!("hodograph-{name}-{}.mech", std::process::id()));
+    std::fs::write(&path, text).unwrap();
+    let mechanism = NumericMechanism::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    mechanism
 }
 
 /// The same model with other parameters.
