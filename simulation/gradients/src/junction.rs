@@ -21,8 +21,8 @@ const TANGENT: f64 = 1e-7;
 /// The component of slip perpendicular to the direction in which slip ends may be at most this part of its
 /// terms.
 const TRANSVERSE_SLIP: f64 = 1e-5;
-/// The terms of a derivative by a parameter count as no smaller than this part of what is differentiated, by the parameter: a
-/// mass that does not matter leaves rounding beside rounding.
+/// The terms of a derivative by a parameter count as no smaller than this part of what is differentiated, over the parameter:
+/// where a mass cancels, the derivative and its terms are both rounding.
 const NOTHING: f64 = 1e-9;
 /// The computed speeds after a collision must agree with those of the motion to this part of the greatest.
 const SPEED_AGREEMENT: f64 = 1e-8;

@@ -75,7 +75,7 @@ impl Scales {
             length = length.max(gaps);
         }
         if !known(length) {
-            // Nor does a fall that is closed: it says nothing of what follows.
+            // A fall shorter than a gap that counts as closed defines none either: later motion may be of any size.
             let resolved = known(fall) && fall > NEAR.max(TOUCHES * place);
             length = if resolved { fall } else { 1.0 };
         }

@@ -1,5 +1,5 @@
 //! Warns of what holds with the values of the parameters alone: unit vectors, and inertias that do not change in the frame
-//! in which they are given. At run time parameters are others.
+//! in which they are given. Parameters may change at run time.
 
 use super::independent_constraints::with_parameters_moved;
 use super::motion::turning_inertias;
