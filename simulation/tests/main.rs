@@ -12,6 +12,7 @@ mod contact_families;
 mod contact_problem;
 mod controller;
 mod crates;
+mod curvature;
 mod discs;
 mod driven;
 mod edges;

@@ -75,7 +75,11 @@ impl Transition<'_> {
         self.front.energy.impacts += hit.energy_change();
         for &(contact, time) in &hit.bounces {
             self.front.chatter.retain(|(_, other)| *other != contact);
-            self.front.chatter.push((self.front.t + time, contact));
+            let end = self.front.t + time;
+            // A rebound of rounding ends at once: nothing is left to wait for.
+            if end > self.front.t {
+                self.front.chatter.push((end, contact));
+            }
         }
         let last_bounce = !hit.bounces.is_empty();
         match hit.kind {

@@ -114,8 +114,8 @@ fn nearest(solid: &Shape, d: &Vector, at: Span) -> Vector {
 /// The square of the part of a cone's radius below which a place counts as on its axis.
 const ON_AXIS: (i64, i64) = (1, 1_000_000_000_000_000_000);
 
-/// The point of a cone that is nearest to a place outside of it: the nearer one of the nearest points of the base and of
-/// the line from rim to apex. A place within the cone is its own nearest point.
+/// The point of a cone that is nearest to a place outside of it: that of the base below its plane, and that of the line
+/// from rim to apex above. A place within the cone is its own nearest point.
 fn nearest_on_cone(d: &Vector, a: &Vector, [r, height]: [&Scalar; 2], at: Span) -> Vector {
     let h = dot(d, a);
     let m = total([d.clone(), opposite(&scaled(h.clone(), a))]);
@@ -128,11 +128,9 @@ fn nearest_on_cone(d: &Vector, a: &Vector, [r, height]: [&Scalar; 2], at: Span) 
     let place = lesser(greater(quotient(free, line, at), integer(0)), integer(1));
     let out = product([r.clone(), less(integer(1), place.clone())]);
     let up = product([place, height.clone()]);
-    // the distances of both, squared: the base's point is at most as far from the axis as the rim
-    let beyond = greater(less(away.clone(), r.clone()), integer(0));
-    let of_base = sum([square(beyond), square(h.clone())]);
-    let of_side = sum([square(less(away.clone(), out.clone())), square(less(h.clone(), up.clone()))]);
-    let side = step(less(of_base, of_side));
+    // What is above the plane of the base is nearest to the side; what is below it, to the base or to its rim, where the
+    // side ends. Beyond the rim both have the same point: a choice by distances would be one by rounding near it.
+    let side = step(h.clone());
     let base = less(integer(1), side.clone());
     let reach = root(greater(squares, square(r.clone())));
     let beside = sum([

@@ -11,6 +11,11 @@ use crate::model::hulls::Hull;
 use crate::model::mechanism::{Definition, Scalar, Shape};
 use crate::span::Span;
 
+/// Ends of edges count as farther than other places by this part of the square of their distance. Beside the end of an edge
+/// the nearest places of its neighbours are at the same distance but for rounding, and only that on the edge itself moves
+/// along with the centre.
+const BEYOND: (i64, i64) = (1, 10_000_000_000_000);
+
 /// The contact. A centre within the polytope has the distance from the nearest plane of a face, which is negative.
 pub fn between(
     [sphere, polytope]: [&Shape; 2],
@@ -58,17 +63,19 @@ pub fn nearest(solid: &Solid<'_>, place: &Components, shared: &mut Shared<'_>) -
         none = shared.scalar(less(none, is_it.clone()), "whether no face is nearest");
         chosen.push(is_it);
     }
-    // what leads to the centre from the nearest point of all edges
+    // what leads to the centre from the nearest point of all edges, and the square of its length as it is compared
     let mut nearest: Option<(Scalar, Components)> = None;
     for edge in &solid.edges {
         let from = keep(difference(place, &edge.middle), "distance from an edge", shared);
-        let along = between_bounds(inner(&from, &edge.direction), &edge.half_length);
-        let along = shared.scalar(along, "place on an edge");
+        let free = shared.scalar(inner(&from, &edge.direction), "place on the line of an edge");
+        let along = shared.scalar(between_bounds(free.clone(), &edge.half_length), "place on an edge");
         let to: Components = std::array::from_fn(|i| {
             less(from[i].clone(), product([along.clone(), edge.direction[i].clone()]))
         });
         let to = keep(to, "distance from an edge", shared);
-        let squared = shared.scalar(inner(&to, &to), "distance from an edge");
+        let beyond = step(less(size(free), edge.half_length.clone()));
+        let farther = sum([integer(1), product([ratio(BEYOND.0, BEYOND.1), beyond])]);
+        let squared = shared.scalar(product([farther, inner(&to, &to)]), "distance from an edge");
         nearest = Some(match nearest {
             None => (squared, to),
             Some((best, way)) => {
@@ -84,8 +91,8 @@ pub fn nearest(solid: &Solid<'_>, place: &Components, shared: &mut Shared<'_>) -
             }
         });
     }
-    let (squared, way) = nearest.unwrap_or_else(|| (integer(1), [0, 1, 2].map(integer)));
-    let distance = shared.scalar(root(squared), "distance from the nearest edge");
+    let way = nearest.map_or_else(|| [1, 0, 0].map(integer), |(_, way)| way);
+    let distance = shared.scalar(root(inner(&way, &way)), "distance from the nearest edge");
     let normal: Components = std::array::from_fn(|i| {
         let of_edge = product([none.clone(), quotient(way[i].clone(), distance.clone(), shared.at)]);
         let of_faces = chosen.iter().zip(&solid.faces);
