@@ -74,3 +74,24 @@ fn inline_models_have_the_same_mistakes() {
         }
     }
 }
+
+/// What the checks see does not depend on the units in which a model counts its coordinates and speeds.
+#[test]
+fn mistakes_do_not_depend_on_units() {
+    let text = std::fs::read_to_string(folder().join("gaps_of_one_sign.mech")).expect("text");
+    let said = |text: &str| -> Vec<String> {
+        let checked = check(&Source::file("x.mech", text.to_owned()));
+        checked.diagnostics.iter().map(|d| d.message.clone()).collect()
+    };
+    let wanted = said(&text);
+    assert_eq!(wanted.len(), 3, "{wanted:?}");
+    for (unit, metres) in [("km", 1e3), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)] {
+        let coordinates =
+            format!("coordinates {{ x: {unit} = {:e}, y: {unit} = {:e} }}", 0.1 / metres, 0.5 / metres);
+        let speeds = format!("speeds {{ u1: {unit}/s, u2: {unit}/s }}");
+        let other = text
+            .replace("coordinates { x: m = 0.1, y: m = 0.5 }", &coordinates)
+            .replace("speeds { u1: m/s, u2: m/s }", &speeds);
+        assert_eq!(said(&other), wanted, "{unit}");
+    }
+}

@@ -16,6 +16,7 @@ mod iterated_contacts;
 mod kept_configurations;
 mod language;
 mod language_page;
+mod literals;
 mod masses_of_shapes;
 mod mistakes;
 mod mistakes_of_a_cart;

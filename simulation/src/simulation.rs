@@ -237,16 +237,24 @@ impl<'m> Simulation<'m> {
     ///
     /// # Errors
     ///
-    /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and
-    /// events remain available: advance to an earlier time. A motion that ends by itself returns the event
+    /// The simulation cannot continue; the error has the reason, the time and the contact. Events and states
+    /// before that time remain available: advance to it. A motion that ends by itself returns the event
     /// [`crate::EventKind::Singular`]; advancing further is the error [`ErrorKind::Singular`]. A time that is
-    /// not finite is refused, and nothing changes.
+    /// not finite, and one before the last step, whose states are not kept, is refused, and nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
-        if until.is_nan() || until == f64::INFINITY {
-            return Err(self.transition().error(
-                None,
-                ErrorKind::BadOption(format!("the time asked for is {until}: it must be finite")),
-            ));
+        let refused = |what: String| {
+            let what = format!("the time asked for is {until}{what}");
+            Err(self.transition().error(None, ErrorKind::BadOption(what)))
+        };
+        if !until.is_finite() {
+            return refused(": it must be finite".to_owned());
+        }
+        let kept = self.steps.first().map_or(self.front.t, |(step, _)| step.t);
+        if until < kept {
+            if until == self.view.0 {
+                return Ok(Progress::Reached);
+            }
+            return refused(format!(" s: states before {kept} s are not kept"));
         }
         loop {
             if self.queue.front().is_some_and(|event| event.time <= until)
@@ -349,10 +357,13 @@ impl<'m> Simulation<'m> {
         &self.front.held
     }
 
-    /// Whether the mechanism is at rest since the last event: all closed contacts stick, and every rate is
+    /// Whether the mechanism is at rest at [`Simulation::time`]: all closed contacts stick, and every rate is
     /// zero.
     pub fn is_at_rest(&self) -> bool {
-        self.front.resting
+        match self.step_at(self.view.0) {
+            Some((_, modes)) if self.view.0 < self.front.t => modes.resting,
+            _ => self.front.resting,
+        }
     }
 
     /// Moves the state to the end of the last step, the latest time that was computed.

@@ -33,6 +33,7 @@ mod one_pass;
 mod painleve;
 mod poisson;
 mod polytopes;
+mod refused;
 mod roads;
 mod rotation;
 mod settling;

@@ -59,7 +59,7 @@ pub fn simulate<'py>(
         return Err(errors::argument(py, "threads", "bad_option", "`threads` is 0: expected at least 1"));
     }
     let tolerance = choices.tolerance.unwrap_or(Options::default().relative_tolerance);
-    if let Err(message) = defaults::check_tolerance(tolerance) {
+    if let Err(message) = Options::check_tolerance(tolerance) {
         return Err(errors::argument(py, "tolerance", "bad_option", &message));
     }
     let raised = Raised::default();

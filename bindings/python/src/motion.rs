@@ -219,7 +219,7 @@ pub fn options(
         }
     };
     let tolerance = choices.tolerance.unwrap_or(Options::default().relative_tolerance);
-    if let Err(message) = defaults::check_tolerance(tolerance) {
+    if let Err(message) = Options::check_tolerance(tolerance) {
         return wrong("tolerance", &message);
     }
     let driven = choices.control.is_some() && choices.period.is_none();

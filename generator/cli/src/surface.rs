@@ -60,14 +60,9 @@ impl SurfaceArguments {
     ///
     /// `unknown_law`, `not_finite`, and [`Stop::Call`] if a value is given neither here nor in the model.
     pub fn surface(&self, mechanism: &dyn Contacts<f64>, contact: usize) -> Outcome<Surface<f64>> {
-        for (option, value) in [("--mu", self.mu), ("--e", self.e)] {
-            if let Some(value) = value.filter(|value| !value.is_finite()) {
-                let message = format!("{option} is {value}: it must be finite");
-                return Err(Failure::new(Kind::Of(Cause::NotFinite), message).into());
-            }
-        }
         let law = self.law.as_deref().map(law).transpose()?;
         let given = GivenSurface { mu: self.mu, e: self.e, law };
+        finite(given, ["--mu", "--e"])?;
         stated_in(mechanism, contact, given).whole().ok_or_else(|| {
             let name =
                 mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
@@ -76,4 +71,29 @@ impl SurfaceArguments {
             ))
         })
     }
+}
+
+/// Checks that the numbers of a surface are finite; they are told by these names.
+///
+/// # Errors
+///
+/// `not_finite`.
+fn finite(given: GivenSurface, names: [&str; 2]) -> Outcome<()> {
+    for (name, value) in names.into_iter().zip([given.mu, given.e]) {
+        if let Some(value) = value.filter(|value| !value.is_finite()) {
+            let message = format!("{name} is {value}: it must be finite");
+            return Err(Failure::new(Kind::Of(Cause::NotFinite), message).into());
+        }
+    }
+    Ok(())
+}
+
+/// Checks what is given of a surface, whose mu and e are told by these names.
+///
+/// # Errors
+///
+/// Those of the solver.
+pub fn checked(given: GivenSurface, names: [&str; 2]) -> Outcome<GivenSurface> {
+    finite(given, names)?;
+    Ok(given.check().map_err(Failure::from)?)
 }

@@ -92,6 +92,27 @@ fn motions_end_by_themselves() {
     assert_eq!(last(&["--state", r#"{"t":3}"#, "--input", "F = 20*sin(t)"]), 13.0);
 }
 
+/// What begins slowly is not at rest: a rod that stands on its end falls, however nearly upright it starts.
+#[cfg(feature = "derive")]
+#[test]
+fn motions_that_begin_slowly_do_not_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = place(&folder, "rod.mech");
+    let rod = "mechanism Rod; parameters { m: kg = 1, l: m = 0.3, g: m/s^2 = 9.81 } coordinates { q: rad = 0 } \
+               speeds { w: rad/s } frames { B = N.rotate(z, q); } points { P = O + l*B.y; } \
+               particles { P { point: P, mass: m } } loads { gravity: -g*N.y; } kinematics { d(q)/dt = w; }";
+    fs::write(&path, rod).unwrap();
+    for (angle, falls) in [("1e-10", true), ("1e-14", true), ("0", false)] {
+        let run = hodograph(&["simulate", &path, "--format", "json", "--state", &format!("q={angle}")], "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let turned = run.stdout.lines().filter_map(|line| {
+            let line: Value = serde_json::from_str(line).ok()?;
+            line["q"]["q"].as_f64()
+        });
+        assert_eq!(turned.fold(0.0, f64::max) > 1.0, falls, "{angle}");
+    }
+}
+
 /// The README shows the model that `new` writes, without its comments; the one of CONTRIBUTING.md is the same.
 #[test]
 fn the_readme_shows_the_new_model() {
@@ -172,6 +193,18 @@ fn tables_say_what_the_objects_say() {
     assert_eq!(hodograph(&wrong, "").error_kind(), "negative_friction");
     let told = hodograph(&[&wrong[..], &["--format", "table"]].concat(), "");
     assert_eq!(told.told(), (1, "error: the coefficient of friction is -1: it must not be negative"));
+    for command in ["collide", "simulate"] {
+        for (option, value) in [("--mu", "nan"), ("--e", "inf")] {
+            let asked = [command, &model, option, value, "--law", "stronge", "--format", "table"];
+            let run = hodograph(&asked, "");
+            assert!(
+                run.stderr.contains(&format!("{option} is ")) && run.code == 1,
+                "{command} {option}: {}",
+                run.stderr
+            );
+            assert!(run.stderr.contains("it must be finite"), "{}", run.stderr);
+        }
+    }
 }
 
 /// All numbers of an object but those of fields that tables leave out.

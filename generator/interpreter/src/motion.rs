@@ -13,31 +13,11 @@ pub const STEP: f64 = 0.01;
 /// Greatest step of the integration where something depends on time by itself, s: it must not be stepped
 /// over.
 pub const STEP_OF_TIME: f64 = 0.05;
-/// The least tolerance: below it the roundings of a step exceed what is asked for, and no step is short
-/// enough.
-pub const LEAST_TOLERANCE: f64 = 1e-16;
 
 /// The greatest step of the integration of a motion by this program, s.
 pub(crate) fn greatest_step(program: &Program, driven: bool) -> f64 {
     let is_time = |operation: &Operation| matches!(operation, Operation::Input(Input::Time));
     if driven || program.operations.iter().any(is_time) { STEP_OF_TIME } else { f64::INFINITY }
-}
-
-/// What is wrong with a tolerance, if anything is.
-///
-/// # Errors
-///
-/// A sentence.
-pub fn check_tolerance(tolerance: f64) -> Result<(), String> {
-    if tolerance.is_nan() || tolerance <= 0.0 {
-        return Err(format!("the tolerance is {tolerance}: it must be positive"));
-    }
-    if tolerance < LEAST_TOLERANCE {
-        return Err(format!(
-            "the tolerance is {tolerance:e}: doubles have 16 digits, and the least tolerance is {LEAST_TOLERANCE:e}"
-        ));
-    }
-    Ok(())
 }
 
 /// What is given of the surface of a contact.

@@ -2,9 +2,9 @@
 
 use hodograph_simulation::{Event, EventKind, Progress, Simulation, SimulationError};
 
-/// Speeds below this, in their units, count as zero.
-const STILL: f64 = 1e-9;
-/// The mechanism is at rest if all speeds are zero in this number of consecutive samples.
+/// Below this part of the greatest kinetic energy so far, a thousand-millionth of the speeds, nothing moves any more.
+const STILL: f64 = 1e-18;
+/// The mechanism is at rest if nothing moves in this number of consecutive samples.
 const SAMPLES_AT_REST: u32 = 10;
 
 /// The time span of a motion.
@@ -48,7 +48,9 @@ pub fn follow<E: From<SimulationError>>(
     span: &Span,
     watch: &mut impl Watch<E>,
 ) -> Result<(), E> {
-    let mut still = 0;
+    let kinetic =
+        |simulation: &Simulation<'_>| simulation.energy().map_or(f64::NAN, |account| account.kinetic);
+    let (mut still, mut greatest) = (0, kinetic(simulation));
     for count in 1_u64.. {
         let end = (span.start + count as f64 * span.step).min(span.until);
         while let Progress::Event(event) = simulation.advance(end)? {
@@ -59,8 +61,9 @@ pub fn follow<E: From<SimulationError>>(
             }
         }
         watch.sample(simulation)?;
-        let is_still = simulation.speeds().iter().all(|speed| speed.abs() <= STILL);
-        still = if is_still { still + 1 } else { 0 };
+        let now = kinetic(simulation);
+        greatest = greatest.max(now);
+        still = if simulation.is_at_rest() || now <= STILL * greatest { still + 1 } else { 0 };
         if end >= span.until || span.at_rest && still >= SAMPLES_AT_REST {
             break;
         }

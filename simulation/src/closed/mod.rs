@@ -11,3 +11,4 @@ pub(crate) mod scales;
 pub(crate) mod settled_direction;
 pub(crate) mod slip_direction;
 pub(crate) mod torques;
+pub(crate) mod units;

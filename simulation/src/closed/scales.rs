@@ -54,8 +54,8 @@ impl Scales {
             gaps = gaps.max(gap.abs());
             for (index, row) in alone.partials.row_iter().enumerate() {
                 // The velocity of the point per angular speed is a lever arm.
-                if angles.is_angular(index) {
-                    length = length.max(row.norm());
+                if let Some(unit) = angles.unit(index) {
+                    length = length.max(row.norm() / unit);
                 }
             }
             acceleration = acceleration.max(alone.beta.norm());

@@ -122,10 +122,10 @@ fn turn(mode: &mut Mode, angle: f64) {
     }
 }
 
-/// Rounds until directions settle, the most contacts for which their changes are found by differences, and the angle of
-/// these.
 /// Accelerations of slip below this part of those without forces are slow.
 const SLOW: f64 = 1e-3;
+/// Rounds until directions settle, the most contacts for which their changes are found by differences, and the angle of
+/// these.
 const ROUNDS: usize = 60;
 const MOST: usize = 16;
 const DIFFERENCE: f64 = 1e-6;

@@ -126,9 +126,27 @@ impl Transition<'_> {
         for (index, function) in self.options.events.iter().enumerate() {
             let value = function(self.front.t, q, u);
             watched.push(Watched::User(index, if value < 0.0 { -1.0 } else { 1.0 }));
-            noise.push(1e-15);
+            noise.push(self.rounding_of_function(&**function, value));
         }
         (watched, noise)
+    }
+
+    /// A bound of the rounding error of an event function of the user that has this value at the front: that of its terms,
+    /// whose sizes are its changes under relative changes of what it is of.
+    fn rounding_of_function(&self, function: &dyn Fn(f64, &[f64], &[f64]) -> f64, value: f64) -> f64 {
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        let count = n + self.mechanism.count(ComponentKind::Speed);
+        let mut moved = self.front.y[..count].to_vec();
+        let change = |there: f64| Some((there - value).abs() / SHARE).filter(|change| change.is_finite());
+        let mut sum = value.abs();
+        for index in 0..count {
+            let kept = moved[index];
+            moved[index] = kept * (1.0 + SHARE);
+            sum += change(function(self.front.t, &moved[..n], &moved[n..])).unwrap_or(0.0);
+            moved[index] = kept;
+        }
+        sum += change(function(self.front.t * (1.0 + SHARE), &moved[..n], &moved[n..])).unwrap_or(0.0);
+        4.0 * f64::EPSILON * sum
     }
 
     /// A bound of the rounding error of a gap, m.

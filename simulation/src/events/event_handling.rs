@@ -109,8 +109,8 @@ impl Transition<'_> {
         self.jams(closed[place].contact)
     }
 
-    /// The contacts, by index, whose slip is so small that it ends now. All that may end within 3 ns are
-    /// assumed to have stopped, and the forces decide which of them stick. Slip that small ends if sticking
+    /// The contacts, by index, whose slip is so small that it ends now. All that may end within three times
+    /// [`ENDING`] are assumed to have stopped, and the forces decide which of them stick. Slip that small ends if sticking
     /// is possible (docs/theory.md, section 17.11).
     pub(crate) fn stops(&self, closed: &[Closed], here: &Evaluation, speeds: &[f64]) -> Vec<usize> {
         let ending = ENDING * self.front.scales.time;

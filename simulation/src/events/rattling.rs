@@ -27,7 +27,7 @@ impl Transition<'_> {
         if near.len() < 2 || !self.quiet(&near)? {
             return Ok(false);
         }
-        let before = (self.front.clone(), self.events.len());
+        let before = self.mark();
         while near.len() > 1 && near.contains(&first) {
             let lies = self.lie(&near);
             if lies == Ok(true) {
@@ -35,8 +35,7 @@ impl Transition<'_> {
             }
             let closed = |contact: &usize| lies.is_ok() && self.front.phases[*contact].is_closed();
             let left: Vec<usize> = near.iter().copied().filter(closed).collect();
-            self.front.clone_from(&before.0);
-            self.events.truncate(before.1);
+            self.return_to(&before);
             if left.len() == near.len() || left.is_empty() {
                 break;
             }

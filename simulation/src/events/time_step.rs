@@ -320,8 +320,9 @@ impl Transition<'_> {
     ) -> Result<Attempt, SimulationError> {
         let tolerances = self.tolerances();
         let looks = Cell::new(0);
-        // What the user gave and is no number: the error, if no shorter step avoids it.
+        // What the user gave and is no number, and what has no value in the model: the error, if no shorter step avoids it.
         let refused = RefCell::new(None);
+        let undefined = RefCell::new(None);
         for _ in 0..80 {
             if looks.get() > LOOKS {
                 let modes = self.modes_in_words();
@@ -370,10 +371,17 @@ impl Transition<'_> {
                         let asked: SmallVec<[Watched; 12]> =
                             functions.iter().map(|&one| watched[one]).collect();
                         let values = self.values(closed, &asked, h * fraction, Some(here), at);
-                        if let Err(Failure::Input(message)) = &values {
-                            *refused.borrow_mut() = Some(Failure::Input(message.clone()));
+                        match values {
+                            Ok(values) => Some(values),
+                            Err(failure) => {
+                                match failure {
+                                    Failure::Input(_) => *refused.borrow_mut() = Some(failure),
+                                    Failure::State(_) => *undefined.borrow_mut() = Some(failure),
+                                    _ => {}
+                                }
+                                None
+                            }
                         }
-                        values.ok()
                     },
                     slopes: &mut |fraction| {
                         let y = step.at(fraction);
@@ -392,7 +400,7 @@ impl Transition<'_> {
             let found = found.map(|crossing| (watched[crossing.function], crossing));
             return Ok(Attempt::Made(step, found));
         }
-        Err(match refused.into_inner() {
+        Err(match refused.into_inner().or(undefined.into_inner()) {
             Some(failure) => self.failure(failure),
             None => self.error(None, ErrorKind::Stalled),
         })
@@ -436,14 +444,13 @@ impl Transition<'_> {
     /// Decides modes anew where the closed contacts have no forces in theirs, though nothing has ended them; the error
     /// `no_forces` if there are no others.
     fn decide_again(&mut self) -> Result<(), SimulationError> {
-        let (before, events) = (self.front.clone(), self.events.len());
-        let was = before.phases.clone();
+        let before = self.mark();
+        let was = self.front.phases.clone();
         let closed: Vec<usize> = (0..was.len()).filter(|&contact| was[contact].is_closed()).collect();
         if self.decide(&closed, &was).is_ok() && self.front.phases != was {
-            return self.crowded(before.t);
+            return self.crowded(before.front.t);
         }
-        self.front = before;
-        self.events.truncate(events);
+        self.return_to(&before);
         Err(self.failure(Failure::NoForces))
     }
 

@@ -18,7 +18,7 @@ pub(crate) enum Watched {
     Cone(usize),
     /// slip of a contact along its settled direction, minus the slip at which a step ends
     Slip(usize),
-    /// the least f of the sliding contacts
+    /// f, the distance of the sliding contacts from a jam
     Jam,
     /// a user's function, times this sign
     User(usize, f64),

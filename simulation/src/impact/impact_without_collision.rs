@@ -50,9 +50,11 @@ impl Transition<'_> {
         self.front.y[n..n + p].copy_from_slice(&after);
         self.drive()?;
         self.front.energy.impacts += outcome.energy_change;
-        let struck = CollisionRecord { outcome, speeds_before: before, last_bounce: false, spread: None };
+        let speeds_before = before.clone();
+        let struck = CollisionRecord { outcome, speeds_before, last_bounce: false, spread: None };
         self.push(Some(contact), EventKind::ImpactWithoutCollision(Box::new(struck)));
-        match self.approaching(&touching, &after, Some(1.0))?.first() {
+        let fastest = self.greatest_velocity(&touching, &before)?;
+        match self.approaching(&touching, &after, Some(fastest))?.first() {
             Some(&(other, _)) => self.strike(other),
             None => self.part_or_stay(&touching, &after, &was),
         }
@@ -126,10 +128,11 @@ impl Transition<'_> {
     /// Takes the impact of contacts that jam together, and what it makes approach.
     fn strike_jam(&mut self, hit: Hit, was: &[Phase]) -> Result<(), SimulationError> {
         self.front.resting = false;
-        let after = hit.after.clone();
+        let (before, after) = (hit.before.clone(), hit.after.clone());
         self.take_impact(hit, None)?;
         let touching = self.touching(None)?;
-        match self.approaching(&touching, &after, Some(1.0))?.first() {
+        let fastest = self.greatest_velocity(&touching, &before)?;
+        match self.approaching(&touching, &after, Some(fastest))?.first() {
             Some(&(other, _)) => self.strike(other),
             None => self.part_or_stay(&touching, &after, was),
         }

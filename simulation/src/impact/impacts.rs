@@ -206,7 +206,20 @@ impl Transition<'_> {
         Ok(touching)
     }
 
-    /// The touching contacts that approach, with their speeds of approach relative to the first one.
+    /// The greatest velocity of these contacts, m/s.
+    pub(crate) fn greatest_velocity(
+        &self,
+        contacts: &[usize],
+        speeds: &[f64],
+    ) -> Result<f64, SimulationError> {
+        let state = State { speeds, ..self.here() };
+        let support = ClosedContacts::new(self.mechanism, &state, contacts, false)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        Ok(support.velocity.amax())
+    }
+
+    /// The touching contacts that approach, with their speeds of approach; `first` is the speed of what struck first,
+    /// m/s.
     pub(crate) fn approaching(
         &self,
         touching: &[usize],
@@ -316,7 +329,7 @@ impl Transition<'_> {
         Err(self.error(None, self.without_end(MOST)))
     }
 
-    /// What the draw of a group of contacts depends on: the seed, the state, and the number of impacts before it at
+    /// What the draw of a group of contacts depends on: the seed, the time, the speeds, and the number of impacts before it at
     /// this time. So the same motion makes the same draws, wherever it is continued from.
     fn key(&self, seed: u64, before: usize, speeds: &[f64]) -> u64 {
         let words = [before as u64, self.front.t.to_bits()].into_iter();

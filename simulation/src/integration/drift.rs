@@ -12,7 +12,8 @@ use crate::closed::torques::WithTorques;
 const STEPS: usize = 4;
 
 /// Normalises quaternions and takes a few Newton steps to close loops, starting from dependent coordinates
-/// that are nearly right. Returns the last change of a coordinate, relative to the greatest coordinate or 1.
+/// that are nearly right. Returns the last change of a coordinate, relative to the greatest coordinate, both in
+/// metres or radians.
 ///
 /// # Errors
 ///
@@ -31,18 +32,21 @@ pub fn close_loops(
     }
     let places: Vec<usize> = (0..count).filter_map(|index| mechanism.dependent_coordinate(index)).collect();
     let (mut residual, mut jacobian) = (vec![0.0; count], vec![0.0; count * count]);
+    let lengths = Lengths::of(mechanism);
     let mut last = 0.0;
     for _ in 0..STEPS {
         let state = State { time, coordinates: &*coordinates, speeds, inputs };
         mechanism.configuration(&state, &mut residual, &mut jacobian)?;
         let matrix = DMatrix::from_row_slice(count, count, &jacobian);
         let change = least_squares(&matrix, &-DVector::from_column_slice(&residual));
+        let mut changes = vec![0.0; coordinates.len()];
         for (&place, change) in places.iter().zip(change.iter()) {
             coordinates[place] += change;
+            changes[place] = *change;
         }
-        let size = coordinates.iter().fold(0.0_f64, |size, q| size.max(q.abs()));
-        last = change.amax() / size.max(1.0);
-        if change.amax() <= 64.0 * f64::EPSILON * size {
+        let (changed, size) = (lengths.greatest(&changes), lengths.greatest(coordinates));
+        last = if changed > 0.0 { changed / size } else { 0.0 };
+        if last <= 64.0 * f64::EPSILON {
             break;
         }
     }

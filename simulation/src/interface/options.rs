@@ -52,6 +52,11 @@ impl ImpactsAtOnce {
     }
 }
 
+/// The least relative tolerance: below it the roundings of a step exceed what is asked for, and no step is short enough.
+const LEAST_TOLERANCE: f64 = 1e-16;
+/// The greatest one: above it no digit of a step is known.
+const GREATEST_TOLERANCE: f64 = 0.1;
+
 /// Options of a simulation. Start from `Options::default()`.
 #[derive(Clone)]
 pub struct Options {
@@ -106,6 +111,30 @@ impl Default for Options {
             compare_orders: false,
             events: Vec::new(),
         }
+    }
+}
+
+impl Options {
+    /// Checks a relative tolerance.
+    ///
+    /// # Errors
+    ///
+    /// A sentence: the condition that is violated.
+    pub fn check_tolerance(tolerance: f64) -> Result<(), String> {
+        if tolerance.is_nan() || tolerance <= 0.0 {
+            return Err(format!("the tolerance is {tolerance}: it must be positive"));
+        }
+        if tolerance < LEAST_TOLERANCE {
+            return Err(format!(
+                "the tolerance is {tolerance:e}: doubles have 16 digits, and the least tolerance is {LEAST_TOLERANCE:e}"
+            ));
+        }
+        if tolerance > GREATEST_TOLERANCE {
+            return Err(format!(
+                "the tolerance is {tolerance}: it is relative, and the greatest is {GREATEST_TOLERANCE}"
+            ));
+        }
+        Ok(())
     }
 }
 

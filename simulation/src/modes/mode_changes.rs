@@ -74,13 +74,11 @@ impl Transition<'_> {
     fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         let before = self.force_of(contact)?;
-        let front = self.front.clone();
-        let events = self.events.len();
+        let mark = self.mark();
         let decided = self.decide_where(&[contact], &was, Held::No);
         if let Err(SimulationError { kind: ErrorKind::NoForces(_), .. }) = &decided {
             // At the boundary neither sticking nor slipping is admissible: slip begins.
-            self.front = front;
-            self.events.truncate(events);
+            self.return_to(&mark);
         } else {
             decided?;
         }

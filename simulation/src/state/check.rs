@@ -5,9 +5,6 @@ use hodograph::{Cause, ComponentKind, Contacts, ImpactError, State, StateError, 
 use crate::closed::pair::Pair;
 use crate::{ContactLaw, Drive, ErrorKind, Options, Samples, SimulationError};
 
-/// The smallest tolerance: with a smaller one rounding exceeds the tolerance of every step.
-const LEAST_TOLERANCE: f64 = 1e-16;
-
 /// Checks options and state, and returns the surfaces of each contact; a contact without a gap has none.
 pub(crate) fn check(
     mechanism: &dyn Contacts<f64>,
@@ -17,20 +14,22 @@ pub(crate) fn check(
     let error =
         |contact: Option<usize>, kind: ErrorKind| SimulationError::new(mechanism, state.time, contact, kind);
     let bad = |message: String| Err(error(None, ErrorKind::BadOption(message)));
-    for (what, value) in [
-        ("the relative tolerance", options.relative_tolerance),
-        ("the absolute tolerance", options.absolute_tolerance),
-        ("the greatest step", options.max_step),
-    ] {
+    for (what, value) in
+        [("the absolute tolerance", options.absolute_tolerance), ("the greatest step", options.max_step)]
+    {
         if value.is_nan() || value <= 0.0 {
             return bad(format!("{what} is {value}: it must be positive"));
         }
     }
-    if options.relative_tolerance < LEAST_TOLERANCE {
-        return bad(format!(
-            "the relative tolerance is {:e}: doubles have 16 digits, and the least is {LEAST_TOLERANCE:e}",
-            options.relative_tolerance
-        ));
+    if options.absolute_tolerance.is_infinite() {
+        return bad("the absolute tolerance is inf: it must be finite".to_owned());
+    }
+    if let Err(message) = Options::check_tolerance(options.relative_tolerance) {
+        return bad(message);
+    }
+    if !state.time.is_finite() {
+        let message = format!("the time of the start is {}: it must be finite", state.time);
+        return Err(error(None, ErrorKind::Argument { cause: Cause::NotFinite, message }));
     }
     let rising = |pair: &[f64]| pair[0] < pair[1];
     if !options.breaks.iter().all(|time| time.is_finite()) || !options.breaks.windows(2).all(rising) {

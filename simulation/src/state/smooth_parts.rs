@@ -89,6 +89,16 @@ impl Parts {
         last.ended_by = Some(Guard::Slip(stopped.to_vec()));
     }
 
+    /// Their number.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Keeps the first parts only.
+    pub fn shorten(&mut self, count: usize) {
+        self.0.truncate(count);
+    }
+
     /// Appends the parts of a later transition. A part that was tried and replaced is dropped.
     pub fn follow(&mut self, later: Parts) {
         for part in later.0 {

@@ -40,7 +40,35 @@ pub(crate) struct Transition<'s> {
     pub parts: Option<Parts>,
 }
 
+/// How far a transition had come before something was tried.
+pub(crate) struct Mark {
+    pub front: Front,
+    events: usize,
+    steps: usize,
+    parts: usize,
+}
+
 impl Transition<'_> {
+    /// Where the transition can return to.
+    pub(crate) fn mark(&self) -> Mark {
+        Mark {
+            front: self.front.clone(),
+            events: self.events.len(),
+            steps: self.steps.len(),
+            parts: self.parts.as_ref().map_or(0, Parts::count),
+        }
+    }
+
+    /// Takes back all that was tried since.
+    pub(crate) fn return_to(&mut self, mark: &Mark) {
+        self.front.clone_from(&mark.front);
+        self.events.truncate(mark.events);
+        self.steps.truncate(mark.steps);
+        if let Some(parts) = &mut self.parts {
+            parts.shorten(mark.parts);
+        }
+    }
+
     /// The state at the front.
     pub(crate) fn here(&self) -> State<'_> {
         self.here_of(&self.front)

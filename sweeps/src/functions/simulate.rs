@@ -6,7 +6,7 @@ use datafusion::arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array,
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use hodograph::{ComponentKind, Contacts as _, Law, Mechanism, State};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_interpreter::motion::{GivenSurface, check_tolerance, surfaces};
+use hodograph_interpreter::motion::{GivenSurface, surfaces};
 use hodograph_simulation::{
     Batch as Many, Case, ContactLaw, ErrorKind, GivenLaw, Options, Outcome, SimulationError, simulate_many,
 };
@@ -80,7 +80,7 @@ fn case<'m>(
     let refused = |kind| SimulationError { time: state.time, contact: None, kind };
     let wrong = |message: String| refused(ErrorKind::BadOption(message));
     let tolerance = batch.number(Place::Tolerance, row).unwrap_or(Options::default().relative_tolerance);
-    check_tolerance(tolerance).map_err(wrong)?;
+    Options::check_tolerance(tolerance).map_err(wrong)?;
     let law = batch.text(Place::Law, row);
     let law = law.map(Law::read).transpose().map_err(|error| refused(error.into()))?;
     let all = GivenSurface { mu: batch.number(Place::Mu, row), e: batch.number(Place::E, row), law };

@@ -161,7 +161,7 @@ fn surfaces(
     mechanism.initial_state(&mut q, &mut u, &mut inputs).map_err(|error| Stop::Fault(error.to_string()))?;
     let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
     let law = arguments.law.as_deref().map(surface::law).transpose()?;
-    let all = GivenSurface { mu: arguments.mu, e: arguments.e, law }.check().map_err(Failure::from)?;
+    let all = surface::checked(GivenSurface { mu: arguments.mu, e: arguments.e, law }, ["--mu", "--e"])?;
     let found = motion::surfaces(mechanism, &state, all, &[]).map_err(|error| {
         Stop::Call(format!("{error}: give --mu, --e and --law, or state its `surface` in the model"))
     })?;

@@ -38,7 +38,7 @@ impl MotionArguments {
     ///
     /// [`Stop::Call`] for the tolerance, and the errors of [`derivation::machine`].
     pub fn machine(&self, model: &Path) -> Outcome<Machine> {
-        motion::check_tolerance(self.tolerance())
+        Options::check_tolerance(self.tolerance())
             .map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
         derivation::machine(model, &self.limits)
     }

@@ -123,7 +123,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
         return Err(Stop::Call("--step and --max-step must be positive and --until finite".to_owned()));
     }
     let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
-    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
+    Options::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
     let mut read = vec![arguments.model.clone(), place::beside(&arguments.model)];
     read.extend(arguments.state.files());
     read.extend(arguments.inputs.clone());

@@ -151,7 +151,10 @@ fn fit(m: &Mechanism, state: &State, views: &Views<'_>, contact: &Contact, gap: 
     }
     let size = |list: &[f64]| list.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let (of_gap, of_velocity) = (size(&rate), size(&along));
-    if !of_gap.is_finite() || !of_velocity.is_finite() || of_velocity < 1e-9 {
+    // per m/s or rad/s of each independent speed, and what is left without them
+    let units = m.speeds.iter().filter(|speed| !speed.dependent).map(|speed| speed.factor).chain([1.0]);
+    let moves = along.iter().zip(units).any(|(v, unit)| v.abs() >= 1e-9 * unit);
+    if !of_gap.is_finite() || !of_velocity.is_finite() || !moves {
         return None;
     }
     if of_gap < 1e-9 * of_velocity {
@@ -208,14 +211,16 @@ fn on_surface(m: &Mechanism, gap: &Scalar, state: &State) -> Option<State> {
             return Some(state);
         }
         slopes.iter_mut().enumerate().filter(|(i, _)| in_quaternion(*i)).for_each(|(_, slope)| *slope = 0.0);
+        // per metre or radian of a coordinate, whatever its unit
+        slopes.iter_mut().zip(&m.coordinates).for_each(|(slope, q)| *slope /= q.factor);
         let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
         if square <= 0.0 || !square.is_finite() || !value.is_finite() {
             return None;
         }
-        // a step of Newton's method along the steepest descent, no longer than 1
+        // a step of Newton's method along the steepest descent, no longer than 1 m or rad
         let share = (value / square).clamp(-1.0 / square.sqrt(), 1.0 / square.sqrt());
-        for (q, slope) in state.coordinates.iter_mut().zip(&slopes) {
-            *q -= share * slope;
+        for ((q, slope), quantity) in state.coordinates.iter_mut().zip(&slopes).zip(&m.coordinates) {
+            *q -= share * slope / quantity.factor;
         }
         numeric::assemble(m, &mut state).ok()?;
     }

@@ -5,7 +5,7 @@ use crate::arbitrary::Arbitrary;
 use crate::model::mechanism::{Mechanism, Orientation};
 use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual};
 
-/// How far the states lie from the initial values.
+/// How far the states lie from the initial values, m or rad.
 const DISTANCES: [f64; 5] = [0.7, 0.4, 0.2, 0.05, 0.0];
 
 /// The number of the first of them that is near.
@@ -47,11 +47,11 @@ fn state(m: &Mechanism, distance: f64, seed: u64) -> State {
         }
     }
     state.time = 0.5 * (1.0 + next());
-    for q in &mut state.coordinates {
-        *q += distance * next();
+    for (q, quantity) in state.coordinates.iter_mut().zip(&m.coordinates) {
+        *q += distance * next() / quantity.factor;
     }
-    for u in &mut state.speeds {
-        *u += 0.5 + 0.4 * next();
+    for (u, quantity) in state.speeds.iter_mut().zip(&m.speeds) {
+        *u += (0.5 + 0.4 * next()) / quantity.factor;
     }
     for input in &mut state.inputs {
         *input += next();

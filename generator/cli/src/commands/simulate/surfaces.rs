@@ -8,7 +8,7 @@ use crate::json::{Failure, Kind};
 use crate::output;
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
-use crate::surface::{help_of_law, law, stated_in};
+use crate::surface::{checked, help_of_law, law, stated_in};
 
 /// The options for surfaces.
 #[derive(Clone, Debug, clap::Args)]
@@ -83,7 +83,7 @@ impl MotionSurfaces {
         };
         let law = self.law.as_deref().map(law).transpose()?;
         // Check the given values even if others are missing.
-        let all = GivenSurface { mu: self.mu, e: self.e, law }.check().map_err(Failure::from)?;
+        let all = checked(GivenSurface { mu: self.mu, e: self.e, law }, ["--mu", "--e"])?;
         let all_laws = self.laws_of_all()?;
         let mut laws: Vec<(usize, GivenLaw)> = Vec::new();
         let mut own: Vec<(usize, GivenSurface)> = Vec::new();
@@ -221,7 +221,8 @@ fn one(text: &str) -> Outcome<(&str, GivenSurface, GivenLaw)> {
     }
     let number = |text: &str| text.parse::<f64>().map_err(|_| wrong());
     let surface = GivenSurface::from(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? });
-    Ok((contact.trim(), surface.check().map_err(Failure::from)?, given))
+    let names = ["mu", "e"].map(|name| format!("--surface {text}: {name}"));
+    Ok((contact.trim(), checked(surface, names.each_ref().map(String::as_str))?, given))
 }
 
 /// The parts between commas outside parentheses.
