@@ -206,14 +206,19 @@ async function begin() {
 
   // The menu, the buttons.
   examples.forEach((one, index) => byId("examples").append(new Option(one.name, index)));
+  let choice = 0;
   byId("examples").addEventListener("change", async (event) => {
-    const chosen = examples[event.target.value];
+    const chosen = examples[event.target.value],
+      own = ++choice;
     if (!chosen) return;
-    derive(await derivationOf(chosen.name));
+    event.target.value = "";
+    const found = await derivationOf(chosen.name);
+    // Another model was chosen meanwhile.
+    if (own !== choice) return;
+    derive(found);
     controls.clear();
     history.replaceState(null, "", location.pathname + location.search);
     editor.replace(chosen.text, chosen.files);
-    event.target.value = "";
   });
   byId("until").addEventListener("change", move);
   byId("format").addEventListener("click", editor.format);
@@ -262,9 +267,12 @@ async function begin() {
   });
   byId("close").addEventListener("click", () => byId("equations-box").close());
   addEventListener("hashchange", async () => {
-    const other = await fromFragment(location.hash);
-    if (!other) return;
+    const own = ++choice,
+      other = await fromFragment(location.hash);
+    if (!other || own !== choice) return;
+    derive("");
     controls.take(other);
+    byId("until").value = other.until || "";
     editor.replace(other.text, other.files);
   });
   globalThis.hodograph = { words, motions, editor, latest: () => latest };

@@ -29,11 +29,6 @@ pub fn read(source: &Source) -> Result<Mechanism, String> {
     checked.mechanism.ok_or_else(|| first.unwrap_or_else(|| "the model has mistakes".to_owned()))
 }
 
-/// Whether a model depends on time by itself.
-pub fn depends_on_time(source: &Source) -> bool {
-    source.tokens().is_ok_and(|tokens| tokens.iter().any(|token| token.text == "t"))
-}
-
 /// What is kept as the derivation of a model.
 pub fn derivation(source: &Source, kept: &str) -> Loaded {
     match kept {

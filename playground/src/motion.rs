@@ -2,7 +2,7 @@
 
 use hodograph::{Contacts, Surface};
 use hodograph_animation::{Recorded, Recording, Setup, Span, Watch, follow};
-use hodograph_interpreter::motion::{GivenSurface, STEP, surfaces};
+use hodograph_interpreter::motion::{GivenSurface, STEP, STEP_OF_TIME, surfaces};
 use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_model::numeric::State;
@@ -19,8 +19,6 @@ use crate::{GoOn, model};
 const LASTS: f64 = 10.0;
 /// A motion has this many samples at most.
 const MOST_SAMPLES: f64 = 20_000.0;
-/// Greatest step of the integration where a model depends on time by itself and is evaluated numerically, s.
-const STEP_OF_TIME: f64 = 0.05;
 
 /// Why a motion ended before its time.
 enum End {
@@ -107,7 +105,7 @@ pub fn motion(source: &Source, question: &Value, go_on: GoOn<'_>) -> Result<Valu
         let step = interpreted.greatest_step(false);
         return followed(&interpreted, &mechanism, &start, question, step, "derivation", go_on);
     }
-    let step = if model::depends_on_time(source) { STEP_OF_TIME } else { f64::INFINITY };
+    let step = if source.names_time() { STEP_OF_TIME } else { f64::INFINITY };
     let numeric = NumericMechanism::with_parameters(mechanism.clone(), &free).map_err(|e| e.to_string())?;
     followed(&numeric, &mechanism, &start, question, step, "numeric", go_on)
 }

@@ -384,6 +384,22 @@ pub(crate) fn either<T: Arithmetic>(
     Vector2::new(x, y)
 }
 
+/// The direction of a vector in the contact plane and its length, also where the squares of its components are
+/// too large or too small to be numbers; `None` of zero.
+pub(crate) fn direction<T: Scalar>(v: &Vector2<T>) -> Option<(Vector2<T>, T)> {
+    let size = larger(v.x.abs(), v.y.abs());
+    if size.is_zero() {
+        return None;
+    }
+    let whole = length(v);
+    if whole.is_finite() && size * size * T::default_epsilon() > T::zero() {
+        return Some((v / whole, whole));
+    }
+    let scaled = v / size;
+    let part = length(&scaled);
+    Some((scaled / part, part * size))
+}
+
 /// The length of a vector in the contact plane.
 #[inline(always)]
 pub(crate) fn length<T: Arithmetic>(v: &Vector2<T>) -> T {

@@ -414,3 +414,37 @@ fn forces_carry_derivatives() {
     }
     assert_eq!(begun, 323);
 }
+
+/// Slip has a direction however fast or slow it is.
+#[test]
+fn the_force_of_slip_does_not_depend_on_its_size() {
+    let m = ReducedMatrix { nn: 1.0, nt: 0.1, ns: 0.0, tt: 1.2, ts: 0.05, ss: 0.9 };
+    let (beta, mu) = (Vector3::new(-9.81, 0.3, -0.2), 0.5);
+    let at = |size: f64| contact_mode(&m, &beta, &Vector2::new(2.0 * size, -1.0 * size), mu).unwrap();
+    let one = at(1.0);
+    assert_eq!(one.mode, ContactMode::Slide);
+    for exponent in [-1000, -600, -520, 520, 600, 1000] {
+        let other = at(2f64.powi(exponent));
+        assert_eq!(other.mode, ContactMode::Slide, "{exponent}");
+        assert!((other.force - one.force).norm() < 1e-14 * one.force.norm(), "{exponent}: {:?}", other.force);
+    }
+    let single = ReducedMatrix { nn: 1.0_f32, nt: 0.1, ns: 0.0, tt: 1.2, ts: 0.05, ss: 0.9 };
+    for size in [1e-30_f32, 1.0, 1e30] {
+        let slip = Vector2::new(2.0 * size, -size);
+        let answer = contact_mode(&single, &Vector3::new(-9.81, 0.3, -0.2), &slip, 0.5).unwrap();
+        assert_eq!(answer.mode, ContactMode::Slide, "{size:e}");
+        assert!((f64::from(answer.force.y) - one.force.y).abs() < 1e-5 * one.force.norm(), "{size:e}");
+    }
+}
+
+/// Whether a body has an inertia does not depend on its unit.
+#[test]
+fn inertias_of_any_size_are_judged_alike() {
+    use hodograph::generated::check_inertia;
+    for size in [1e-300, 1e-160, 1.0, 1e110, 1e300] {
+        let scaled = |parts: [f64; 6]| check_inertia(parts.map(|part| part * size), "Body");
+        assert!(scaled([1.0, 1.0, 1.0, 0.01, 0.01, 0.01]).is_ok(), "{size:e}");
+        assert!(scaled([1.0, 1.0, 2.5, 0.0, 0.0, 0.0]).is_err(), "{size:e}");
+        assert!(scaled([1.0, 1.0, 1.0, 0.9, 0.0, 0.0]).is_err(), "{size:e}");
+    }
+}

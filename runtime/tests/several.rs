@@ -139,3 +139,47 @@ fn input_is_checked() {
     let mut memory = [];
     assert!(solve_several(&none, &mut [], &mut [], &mut memory, &mut Dense::new(&mut [])).is_ok());
 }
+
+/// Numbers at the ends of their range: an answer is one, and forces that break a law have no certificate without a flaw.
+#[test]
+fn numbers_without_bounds_are_no_answers() {
+    let (mut memory, mut matrix) = ([0.0; memory_of_several(1)], [0.0; 9]);
+    for size in [1e-320, 1e-300, 1e-200, 1e200, 1e300, 1e308] {
+        let w = Matrix3::<f64>::identity() * size;
+        for pull in [1e-200, 1.0, 1e200] {
+            let beta = [-pull, 0.1 * pull, 0.0];
+            let problem = SeveralContacts { matrix: w.as_slice(), beta: &beta, mu: &[0.3], slip: &[None] };
+            let (mut force, mut acceleration) = ([0.0; 3], [0.0; 3]);
+            let found = solve_several(
+                &problem,
+                &mut force,
+                &mut acceleration,
+                &mut memory,
+                &mut Dense::new(&mut matrix),
+            );
+            let numbers = force.iter().chain(&acceleration).all(|number| number.is_finite());
+            assert!(numbers, "{size:e} {pull:e}: {found:?} {force:?} {acceleration:?}");
+            let wanted = pull / size;
+            // squares of the forces must be numbers, and their parts too
+            if found.is_ok() {
+                assert!(
+                    (force[0] - wanted).abs() <= 1e-12 * wanted.max(1e-290),
+                    "{size:e} {pull:e}: {force:?}"
+                );
+            } else {
+                assert!(!(1e-290..1e290).contains(&wanted) || size < 1e-300, "{size:e} {pull:e}: {found:?}");
+            }
+        }
+    }
+}
+
+/// Where no acceleration has terms, forces must obey their own laws nevertheless.
+#[test]
+fn forces_that_move_nothing_obey_their_laws() {
+    let mut memory = [0.0; memory_of_several(1)];
+    let problem = SeveralContacts { matrix: &[0.0; 9], beta: &[0.0; 3], mu: &[0.3], slip: &[None] };
+    let mut worst = |force: [f64; 3]| certify(&problem, &force, &mut memory).unwrap().greatest();
+    assert!(worst([-5.0, 0.0, 0.0]) > 0.9);
+    assert!(worst([1.0, 100.0, 0.0]) > 0.9);
+    assert!(worst([5.0, 1.0, 0.0]) <= 0.0 && worst([0.0; 3]) <= 0.0);
+}

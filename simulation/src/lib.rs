@@ -57,6 +57,7 @@ pub use crate::{
         event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
         given_law::GivenLaw,
         options::{EventFunction, ImpactsAtOnce, Options},
+        sample_times::sample_times,
     },
     many::{Batch, Case, Outcome, StopAt, Watch, digest, simulate_many},
     outcome_set::{End, OutcomeSet, Range},

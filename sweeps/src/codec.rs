@@ -52,15 +52,18 @@ fn encode_function(function: &ScalarUDF, buf: &mut Vec<u8>) {
     }
 }
 
-/// The models that were received with plans, by digest, so that each is decoded once.
-fn arrived() -> &'static Mutex<HashMap<[u8; 32], Arc<Model>>> {
-    static ARRIVED: OnceLock<Mutex<HashMap<[u8; 32], Arc<Model>>>> = OnceLock::new();
+/// The models that were received with plans, by name and digest, so that each is decoded once.
+type Arrived = Mutex<HashMap<(String, [u8; 32]), Arc<Model>>>;
+
+fn arrived() -> &'static Arrived {
+    static ARRIVED: OnceLock<Arrived> = OnceLock::new();
     ARRIVED.get_or_init(Mutex::default)
 }
 
 fn own_model(name: &str, digest: &[u8; 32], texts: &[u8]) -> Option<Arc<Model>> {
     let mut arrived = arrived().lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(model) = arrived.get(digest) {
+    let key = (name.to_owned(), *digest);
+    if let Some(model) = arrived.get(&key) {
         return Some(Arc::clone(model));
     }
     let (length, texts) = texts.split_first_chunk::<8>()?;
@@ -70,7 +73,7 @@ fn own_model(name: &str, digest: &[u8; 32], texts: &[u8]) -> Option<Arc<Model>> 
         return None;
     }
     let model = Arc::new(model);
-    arrived.insert(*digest, Arc::clone(&model));
+    arrived.insert(key, Arc::clone(&model));
     Some(model)
 }
 

@@ -7,6 +7,7 @@ use datafusion::logical_expr::LogicalPlan;
 use sha2::{Digest, Sha256};
 
 use crate::failure::Failure;
+use crate::models::Model;
 use crate::output;
 
 /// The directory of the parts.
@@ -32,9 +33,13 @@ impl Parts {
     ) -> Result<Self, Failure> {
         std::fs::create_dir_all(directory)
             .map_err(|error| Failure::file(directory, "make the directory", error))?;
-        let mut hash = Sha256::new().chain_update(sql);
+        let mut hash = Sha256::new().chain_update((sql.len() as u64).to_le_bytes()).chain_update(sql);
         for model in models {
-            hash.update(std::fs::read(model).unwrap_or_default());
+            // With what it imports written out, and its derivation.
+            let model = Model::read(model).map_err(Failure::Input)?;
+            hash.update((model.name.len() as u64).to_le_bytes());
+            hash.update(&model.name);
+            hash.update(model.digest());
         }
         let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         let text = format!(

@@ -36,11 +36,11 @@ pub fn directional(
     // The direction in units of the sizes of the variables.
     let mut longest = 0.0_f64;
     for &(known, seed) in knowns {
+        if !seed.is_finite() {
+            return Err(format!("a seed is {seed}: it must be finite"));
+        }
         let size = known_of(&mut now.clone(), known)?.abs().max(1.0);
         longest = longest.max(seed.abs() / size);
-    }
-    if longest == 0.0 {
-        return Ok(vec![0.0; unknowns.len()]);
     }
     let at = |step: f64| -> Result<Vec<f64>, String> {
         let mut there = now.clone();
@@ -50,6 +50,9 @@ pub fn directional(
         let mut values = Values::new(running, &there);
         unknowns.iter().map(|&unknown| values.number(unknown)).collect()
     };
+    if longest == 0.0 {
+        return Ok(vec![0.0; at(0.0)?.len()]);
+    }
     let difference = |step: f64| -> Result<Vec<f64>, String> {
         let (plus, minus) = (at(step)?, at(-step)?);
         Ok(plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / (2.0 * step)).collect())

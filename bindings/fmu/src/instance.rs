@@ -33,6 +33,10 @@ pub enum Mode {
     Terminated,
 }
 
+/// The states in which there is a motion.
+const ONCE_BEGUN: [Mode; 5] =
+    [Mode::Initialization, Mode::Event, Mode::ContinuousTime, Mode::Step, Mode::Terminated];
+
 /// The reason why a call is refused or fails, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal(pub String);
@@ -340,6 +344,7 @@ impl Instance {
         }
         self.settings.start.time = start;
         self.now.time = start;
+        self.running = None;
         self.mode = Mode::Initialization;
         Ok(())
     }
@@ -432,8 +437,9 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// `states` has another length.
+    /// `states` has another length, or the call is not allowed now.
     pub fn states(&mut self, states: &mut [f64]) -> Result<(), Refusal> {
+        self.expect(&ONCE_BEGUN)?;
         self.running()?;
         let all = [&self.now.coordinates[..], &self.now.speeds].concat();
         fill(states, &all)
@@ -466,8 +472,9 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// They cannot be computed, or `rates` has another length.
+    /// They cannot be computed, `rates` has another length, or the call is not allowed now.
     pub fn rates(&mut self, rates: &mut [f64]) -> Result<(), Refusal> {
+        self.expect(&ONCE_BEGUN)?;
         self.running()?;
         let Some(running) = &self.running else { return refused("there is no motion") };
         fill(rates, Values::new(running, &self.now).rates()?)
@@ -477,8 +484,9 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// They cannot be computed, or `values` has another length.
+    /// They cannot be computed, `values` has another length, or the call is not allowed now.
     pub fn indicators(&mut self, values: &mut [f64]) -> Result<(), Refusal> {
+        self.expect(&ONCE_BEGUN)?;
         self.running()?;
         let Some(running) = &self.running else { return refused("there is no motion") };
         fill(values, Values::new(running, &self.now).indicators()?)

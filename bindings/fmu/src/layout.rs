@@ -247,7 +247,21 @@ impl Layout {
         if self.has_potential {
             add("energy.potential".into(), "J", "of gravity and springs", VariableKind::PotentialEnergy);
         }
-        add("events".into(), "", "number of events since the start", VariableKind::Events);
+        // all others of the unit's own have a point in their names
+        let kinds = [
+            ComponentKind::Parameter,
+            ComponentKind::Input,
+            ComponentKind::Coordinate,
+            ComponentKind::Speed,
+            ComponentKind::DependentSpeed,
+        ];
+        let taken =
+            |name: &str| kinds.iter().any(|&kind| count(kind).any(|index| named(kind, index).0 == name));
+        let mut events = "events".to_owned();
+        while taken(&events) {
+            events.push('_');
+        }
+        add(events, "", "number of events since the start", VariableKind::Events);
         for (place, indicator) in self.indicators.iter().enumerate() {
             let of = indicator
                 .contact

@@ -125,6 +125,9 @@ fn calls_at_the_wrong_time_are_refused() {
     let refused = fresh.update_discrete_states().unwrap_err();
     assert_eq!(refused.0, "the call is not allowed now: the unit is instantiated, and not yet initialized");
     assert!(fresh.exit_initialization().is_err() && fresh.do_step(0.0, 0.1).is_err());
+    // Nothing moves before the initialization, whose time is that of the motion.
+    assert!(fresh.states(&mut [0.0; 4]).is_err() && fresh.rates(&mut [0.0; 4]).is_err());
+    assert!(fresh.indicators(&mut []).is_err());
     let mut unit = unit(Kind::ModelExchange);
     assert!(unit.step_completed().is_err());
     assert!(unit.enter_initialization(0.0).is_err());

@@ -1,9 +1,7 @@
 //! The mechanism of a model: by its derived equations, or by the model alone.
 
 use hodograph::{ComponentKind, Contacts, Mechanism as _, ParameterError};
-use hodograph_generator::check;
 use hodograph_generator::model::mechanism::Mechanism as Model;
-use hodograph_generator::source::Source;
 use hodograph_interpreter::motion::STEP_OF_TIME;
 use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 use pyo3::prelude::*;
@@ -88,11 +86,4 @@ impl Machine {
     pub fn name_of(&self, kind: ComponentKind, index: usize) -> &str {
         self.contacts().component(kind, index).map_or("", |component| component.name)
     }
-}
-
-/// Whether a model depends on time by itself.
-pub fn depends_on_time(source: &Source) -> bool {
-    let tokens = check::analyse(source).tokens;
-    let all = source.expansion().map_or(&tokens, |expansion| &expansion.tokens);
-    all.iter().any(|token| token.text == "t")
 }

@@ -92,16 +92,21 @@ pub fn simulate<'py>(
     let batch = Batch { threads, watch: Some(&watch), stop: Some(stop) };
     let outcomes = py.detach(|| {
         std::thread::scope(|scope| {
-            let batch = scope.spawn(|| match machine {
-                Machine::Derived(mechanism) => {
-                    simulate_many(rows, |row| plan.case(mechanism.as_ref(), row), &batch)
-                }
-                Machine::Numeric { mechanism, .. } => {
-                    simulate_many(rows, |row| plan.case(mechanism.as_ref(), row), &batch)
-                }
+            let waiting = std::thread::current();
+            let batch = scope.spawn(move || {
+                let outcomes = match machine {
+                    Machine::Derived(mechanism) => {
+                        simulate_many(rows, |row| plan.case(mechanism.as_ref(), row), &batch)
+                    }
+                    Machine::Numeric { mechanism, .. } => {
+                        simulate_many(rows, |row| plan.case(mechanism.as_ref(), row), &batch)
+                    }
+                };
+                waiting.unpark();
+                outcomes
             });
             while !batch.is_finished() {
-                std::thread::sleep(LOOK);
+                std::thread::park_timeout(LOOK);
                 let told: PyResult<()> = Python::attach(|py| {
                     py.check_signals()?;
                     if let Some(progress) = &progress {
@@ -115,7 +120,7 @@ pub fn simulate<'py>(
                     break;
                 }
             }
-            batch.join().unwrap_or_default()
+            batch.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
         })
     });
     let error = interrupted.or(raised.lock().unwrap_or_else(PoisonError::into_inner).take());

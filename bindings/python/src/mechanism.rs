@@ -17,7 +17,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arguments::{Surfaces, array, column, common, raises, rows};
 use crate::gradients::{self, Fitted, Periodicity};
-use crate::machine::{Machine, depends_on_time};
+use crate::machine::Machine;
 use crate::machines::Machines;
 use crate::motion::Choices;
 use crate::record::{Record, Samples};
@@ -92,7 +92,7 @@ impl Mechanism {
         let mechanism = NumericMechanism::new(mechanism).map_err(|error| {
             errors::error(py, "ParameterError", &error.to_string(), "parameters", None, None)
         })?;
-        let numeric = Machine::Numeric { mechanism: Box::new(mechanism), timed: depends_on_time(source) };
+        let numeric = Machine::Numeric { mechanism: Box::new(mechanism), timed: source.names_time() };
         Ok((numeric, format::plain(source).into()))
     }
 

@@ -8,7 +8,7 @@ use hodograph::{Cause, ComponentKind, Contacts, State};
 use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
     ContactLaw, ContactPhase, Drive, EnergyAccount, Event, EventFunction, EventKind, ImpactsAtOnce,
-    InputFunction, Options, Progress, Samples, Simulation, SimulationError,
+    InputFunction, Options, Progress, Samples, Simulation, SimulationError, sample_times,
 };
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyUserWarning;
@@ -277,10 +277,9 @@ fn follow(
         Err(error) => return Found { ended: Some(Ended::Error(error)), ..found },
     };
     let mut looked = Instant::now();
-    let count = ((until - state.time) / step).ceil() as usize;
+    let later = (until > state.time).then(|| sample_times(state.time, step, until));
     let piece = (until - state.time) / LOOKS;
-    'samples: for index in 0..=count {
-        let time = (state.time + step * index as f64).min(until);
+    'samples: for time in std::iter::once(state.time).chain(later.into_iter().flatten()) {
         let mut reached = false;
         while !reached && found.ended.is_none() {
             // To look at a time in between changes nothing of the motion.

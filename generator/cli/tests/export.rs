@@ -430,6 +430,30 @@ fn several_mechanisms_are_in_one_program() {
     prints_both(&objects);
 }
 
+/// A mechanism that is called like a word of Rust, with names of other letters: the crate builds, and C has names that
+/// every linker takes.
+#[test]
+fn names_of_any_letters_build() {
+    let folder = tempfile::tempdir().unwrap();
+    for (stem, mechanism) in [("box", "box"), ("crate", "crate")] {
+        let model = folder.path().join(format!("{stem}.mech"));
+        let text = format!(
+            "/// ~~~\n/// a box\n/// ~~~\nmechanism {mechanism}; parameters {{ größe: m = 2, m: kg = 1, g: m/s^2 = 9.81 }} \
+             coordinates {{ höhe: m = 1 }} speeds {{ v: m/s }} points {{ Fuß = O + höhe*N.y; }} \
+             particles {{ Körper {{ point: Fuß, mass: m }} }} loads {{ gravity: -g*N.y; }} kinematics {{ d(höhe)/dt = v; }} \
+             contacts {{ stoß {{ point: Fuß, normal: N.y, gap: höhe - größe/4, surface: {{ e: 0.5 }} }} }}"
+        );
+        std::fs::write(&model, text).unwrap();
+        assert_eq!(hodograph(&["derive", model.to_str().unwrap()], "").code, 0);
+        let exported = export(&model, &folder.path().join("exported"), &[]);
+        let header = std::fs::read_dir(exported.join("include")).unwrap().next().unwrap().unwrap().path();
+        let header = std::fs::read_to_string(header).unwrap();
+        let code: String = header.lines().filter(|line| line.contains('(')).collect();
+        assert!(code.contains("_gap_stou00df(") && code.contains("_collide_stou00df("), "{header}");
+        build(&exported);
+    }
+}
+
 #[test]
 fn every_header_is_c_and_cpp() {
     let folder = tempfile::tempdir().unwrap();

@@ -100,7 +100,7 @@ fn motions_that_begin_slowly_do_not_end() {
     let path = place(&folder, "rod.mech");
     let rod = "mechanism Rod; parameters { m: kg = 1, l: m = 0.3, g: m/s^2 = 9.81 } coordinates { q: rad = 0 } \
                speeds { w: rad/s } frames { B = N.rotate(z, q); } points { P = O + l*B.y; } \
-               particles { P { point: P, mass: m } } loads { gravity: -g*N.y; } kinematics { d(q)/dt = w; }";
+               particles { Bob { point: P, mass: m } } loads { gravity: -g*N.y; } kinematics { d(q)/dt = w; }";
     fs::write(&path, rod).unwrap();
     for (angle, falls) in [("1e-10", true), ("1e-14", true), ("0", false)] {
         let run = hodograph(&["simulate", &path, "--format", "json", "--state", &format!("q={angle}")], "");

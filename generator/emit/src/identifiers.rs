@@ -1,7 +1,6 @@
-//! Converts names and words of a model to Rust tokens: identifiers, names of types, documentation.
+//! Converts names of a model to those of Rust: identifiers, names of types.
 
-use proc_macro2::{Ident, Span, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, Span};
 
 use hodograph_model::rust_names::is_keyword;
 
@@ -56,44 +55,9 @@ pub fn ident(name: &str) -> Ident {
     }
 }
 
-/// Documentation, an attribute per line.
-pub fn docs(text: &str) -> TokenStream {
-    let text = prose(text);
-    let lines = text.lines().map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
-    quote! { #(#[doc = #lines])* }
-}
-
-/// An author's text as documentation for rustdoc. Indented text and fenced blocks without a language are not
-/// Rust, but `cargo test` would compile them as examples; they are changed accordingly.
-pub fn prose(text: &str) -> String {
-    let mut fenced = false;
-    let line = |line: &str| {
-        let fence = line.trim_start().starts_with("```");
-        let opens = fence && !fenced;
-        // Inside a fence, blanks are layout; outside, they would start a code block.
-        let line = if fenced && !fence { line } else { line.trim_start() };
-        fenced ^= fence;
-        if opens && line.trim_end() == "```" { "```text".to_owned() } else { line.trim_end().to_owned() }
-    };
-    let mut lines: Vec<String> = text.trim().lines().map(line).collect();
-    // An unclosed fence would extend to the text after it.
-    if fenced {
-        lines.push("```".to_owned());
-    }
-    lines.join("\n")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn comments_are_no_examples() {
-        assert_eq!(prose(" A cart.\n\n     __\n    |__|\n"), "A cart.\n\n__\n|__|");
-        assert_eq!(prose("```\n  a\n```\nb"), "```text\n  a\n```\nb");
-        assert_eq!(prose("```rust\nlet a = 1;\n```"), "```rust\nlet a = 1;\n```");
-        assert_eq!(prose("a\n```\nb"), "a\n```text\nb\n```");
-    }
 
     #[test]
     fn cases() {

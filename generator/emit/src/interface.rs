@@ -4,12 +4,13 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::identifiers::{docs, ident};
+use crate::identifiers::ident;
+use crate::prose::docs;
 
 /// The interface of a module.
 #[derive(Clone, Debug)]
 pub struct Interface {
-    /// name of the module
+    /// name of the module, in Rust raw if it is a keyword
     pub module: String,
     /// name of the mechanism's type
     pub mechanism: String,

@@ -19,6 +19,7 @@ pub mod interface;
 mod lanes;
 mod linearisation;
 mod methods;
+mod prose;
 mod record;
 mod routine;
 mod saltation;
@@ -96,7 +97,7 @@ fn module_in_parts(
     let krate = &options.krate;
     let module = identifiers::ident(&options.module);
     let tracked = &options.tracked;
-    let docs = identifiers::docs(&emitter.module_docs());
+    let docs = prose::docs(&emitter.module_docs());
     let records = emitter.records().into_iter().map(|record| record.tokens(krate));
     let mechanism_type = emitter.mechanism_type();
     let (collision, closed) = (emitter.collision_type(), emitter.closed_type());
@@ -156,7 +157,7 @@ pub fn interface(mechanism: &Mechanism, program: &Program, module: &str) -> Resu
     let structures = records.chain(results.into_iter().flatten()).chain(emitter.plain_structures());
     let methods = emitter.groups().into_iter().flat_map(|group| group.methods);
     Ok(Interface {
-        module: module.to_owned(),
+        module: identifiers::ident(module).to_string(),
         mechanism: emitter.name.to_string(),
         docs: emitter.module_docs(),
         numbers: emitter.parameters.len() + emitter.hoisted.len(),

@@ -10,7 +10,7 @@ use super::interface::{Failure, Group, InPlace, Method, Signature, Type};
 use super::record::Record;
 use super::routine::Routine;
 use super::values::local;
-use crate::identifiers::prose;
+use crate::prose::prose;
 use hodograph_model::rust_names::snake_case;
 use hodograph_program::program::quantity::Entries;
 use hodograph_program::program::{ContactQuantity, Output, Quantity};

@@ -3,8 +3,9 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::identifiers::{ident, prose};
+use crate::identifiers::ident;
 use crate::interface::{self, Struct, Type};
+use crate::prose::{fence, prose};
 use hodograph_model::model::mechanism::Variable;
 
 /// A struct of named numbers.
@@ -34,8 +35,12 @@ impl Record {
                 // the unit comes after the first sentence
                 let (what, more) =
                     text.split_once('\n').map_or((text.as_str(), ""), |(what, more)| (what, more));
-                let docs = format!(" {}, in {}", what.trim_end_matches('.'), unit(&quantity.unit));
-                let docs = if more.is_empty() { docs } else { format!("{docs}\n{more}") };
+                let counted = unit(&quantity.unit);
+                let docs = match (fence(what), more) {
+                    (Some(_), _) => format!(" In {counted}.\n\n{text}"),
+                    (None, "") => format!(" {}, in {counted}", what.trim_end_matches('.')),
+                    (None, more) => format!(" {}, in {counted}\n{more}", what.trim_end_matches('.')),
+                };
                 let unit = if quantity.unit.is_empty() { "1" } else { &quantity.unit };
                 Field {
                     name: ident(&quantity.name),

@@ -192,6 +192,11 @@ impl Source {
         }
     }
 
+    /// Whether the model names the time: then its equations may depend on it by itself.
+    pub fn names_time(&self) -> bool {
+        self.tokens().is_ok_and(|tokens| tokens.iter().any(|token| token.text == "time"))
+    }
+
     /// The tokens of the model without parts.
     pub fn tokens(&self) -> Result<Cow<'_, [Token]>, Box<Diagnostic>> {
         if let Some(parts) = &self.parts {

@@ -10,7 +10,11 @@ use super::{
     stick::{Stuck, stuck},
     tangential::Closed,
 };
-use crate::{Law, ReducedMatrix, Scalar, Surface, scalar::length, solve::check};
+use crate::{
+    Law, ReducedMatrix, Scalar, Surface,
+    scalar::{direction, length},
+    solve::check,
+};
 
 /// A closed contact in scaled units, with the input that converts results back.
 struct ScaledContact<'a, T: Scalar> {
@@ -28,9 +32,10 @@ pub(super) fn select<T: Scalar>(
     before: &Vector3<T>,
 ) -> Result<ContactForce<T>, ContactError<T>> {
     let contact = scaled_contact(matrix, beta, slip, mu)?;
-    let speed = length(slip);
-    let answer =
-        if speed > T::zero() { contact.slipping(&(slip / speed), speed) } else { contact.resting(before) };
+    let answer = match direction(slip) {
+        Some((d, speed)) => contact.slipping(&d, speed),
+        None => contact.resting(before),
+    };
     answer.and_then(finite)
 }
 
@@ -43,12 +48,13 @@ pub(super) fn keep<T: Scalar>(
     mu: T,
 ) -> Result<ContactForce<T>, ContactError<T>> {
     let contact = scaled_contact(matrix, beta, slip, mu)?;
-    let speed = length(slip);
     let none = ContactError::NoMode { free_acceleration: beta.x };
     let answer = match mode {
         ContactMode::Separate => Ok(contact.separate()),
-        ContactMode::Slide if speed > T::zero() => contact.slide(&(slip / speed), Some(speed)),
-        ContactMode::Slide => Err(none),
+        ContactMode::Slide => match direction(slip) {
+            Some((d, speed)) => contact.slide(&d, Some(speed)),
+            None => Err(none),
+        },
         ContactMode::Stick => stuck(&contact.closed).map(|stuck| contact.stick(&stuck)).ok_or(none),
         ContactMode::BeginSlip => {
             let mut best: Option<Beginning<T>> = None;

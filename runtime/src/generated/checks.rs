@@ -2,6 +2,7 @@
 //! of slices.
 
 use super::{mul_add, number};
+use crate::scalar::larger;
 use crate::{Number, ParameterError, Scalar, StateError};
 
 /// Whether a value counts as zero relative to its scale, or one of the two is NaN; of several values: one.
@@ -98,10 +99,15 @@ pub fn check_size<T: Scalar>(
 /// rounding). The diagonal of S is a, b, c, its other entries are the opposites of xy, yz, zx.
 #[inline(never)]
 pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Result<(), ParameterError> {
-    let [xx, yy, zz, xy, yz, zx] = components;
     if !all_finite(components) {
         return Err(ParameterError::NotFinite { name: body });
     }
+    let greatest = components.iter().fold(T::zero(), |most, part| larger(most, part.abs()));
+    if greatest.is_zero() {
+        return Ok(());
+    }
+    // Products of three of them are numbers then.
+    let [xx, yy, zz, xy, yz, zx] = components.map(|part| part / greatest);
     let half = (xx + yy + zz) * number(0.5);
     let size = xx.abs() + yy.abs() + zz.abs() + xy.abs() + yz.abs() + zx.abs();
     let small = size * T::default_epsilon() * number(64.0);

@@ -61,14 +61,17 @@ pub(super) fn certificate<T: Scalar>(
     for i in 0..scaled.contacts() {
         let (law, x, v, terms) = (scaled.law(i), three(x, i), three(v, i), three(terms, i));
         let rate = larger(terms.x, larger(terms.y, terms.z));
-        if rate.is_zero() {
+        let force = rate + x.norm();
+        if force.is_zero() {
             continue;
         }
-        let force = rate + x.norm();
         let note = |worst: &mut T, value: T| *worst = larger_or_nan(*worst, value);
-        note(&mut worst.approach, -v.x / rate);
         note(&mut worst.pull, -x.x / force);
-        note(&mut worst.complementarity, smaller(x.x / force, v.x / rate));
+        // Without terms there is no acceleration.
+        if !rate.is_zero() {
+            note(&mut worst.approach, -v.x / rate);
+            note(&mut worst.complementarity, smaller(x.x / force, v.x / rate));
+        }
         let most = law.mu * larger(x.x, zero);
         if let Some(d) = law.slip {
             let (t, s) = (x.y + most * d.x, x.z + most * d.y);

@@ -95,7 +95,8 @@ pub fn solve_several<T: Scalar, S: NewtonSteps<T>>(
     let Search { scaled, vectors, nearest, .. } = search;
     let Some(found) = found else {
         for (i, (force, nearest)) in force.iter_mut().zip(nearest.iter()).enumerate() {
-            *force = *nearest * scaled.scale[i / 3] * scaled.unit;
+            let there = *nearest * scaled.scale[i / 3] * scaled.unit;
+            *force = if there.is_finite() { there } else { T::zero() };
         }
         return Err(Unfound::NotFound { violation: least });
     };
@@ -104,6 +105,12 @@ pub fn solve_several<T: Scalar, S: NewtonSteps<T>>(
         let scale = scaled.scale[i / 3];
         force[i] = vectors.best[i] * scale * scaled.unit;
         acceleration[i] = vectors.v[i] * scaled.unit / scale;
+    }
+    if !force.iter().chain(acceleration.iter()).all(|number| number.is_finite()) {
+        // In these units the answer has no numbers.
+        force.fill(T::zero());
+        acceleration.fill(T::zero());
+        return Err(Unfound::NotFound { violation: least });
     }
     Ok(found)
 }

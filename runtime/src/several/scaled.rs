@@ -38,11 +38,13 @@ impl<'a, T: Scalar> Scaled<'a, T> {
     ) -> Self {
         let n = beta.len();
         for (i, scale) in scale.iter_mut().enumerate() {
+            // A quarter of the trace: the sum of the greatest numbers is none.
+            let (half, quarter) = (constant::<T>(0.5), constant::<T>(0.25));
             let mut trace = T::zero();
             for row in 3 * i..3 * i + 3 {
-                trace += problem.matrix[row * n + row].abs();
+                trace += problem.matrix[row * n + row].abs() * quarter;
             }
-            *scale = if trace > T::zero() { binary(T::one() / trace.sqrt()) } else { T::one() };
+            *scale = if trace > T::zero() { binary(half / trace.sqrt()) } else { T::one() };
         }
         let mut unit = T::zero();
         for (row, (scaled, beta)) in beta.iter_mut().zip(problem.beta).enumerate() {

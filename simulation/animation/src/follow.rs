@@ -1,6 +1,6 @@
 //! Simulates a motion from sample to sample, with the events between them.
 
-use hodograph_simulation::{Event, EventKind, Progress, Simulation, SimulationError};
+use hodograph_simulation::{Event, EventKind, Progress, Simulation, SimulationError, sample_times};
 
 /// Below this part of the greatest kinetic energy so far, a thousand-millionth of the speeds, nothing moves any more.
 const STILL: f64 = 1e-18;
@@ -51,8 +51,7 @@ pub fn follow<E: From<SimulationError>>(
     let kinetic =
         |simulation: &Simulation<'_>| simulation.energy().map_or(f64::NAN, |account| account.kinetic);
     let (mut still, mut greatest) = (0, kinetic(simulation));
-    for count in 1_u64.. {
-        let end = (span.start + count as f64 * span.step).min(span.until);
+    for end in sample_times(span.start, span.step, span.until) {
         while let Progress::Event(event) = simulation.advance(end)? {
             watch.event(&event, simulation)?;
             if matches!(event.kind, EventKind::Singular) {
@@ -64,7 +63,7 @@ pub fn follow<E: From<SimulationError>>(
         let now = kinetic(simulation);
         greatest = greatest.max(now);
         still = if simulation.is_at_rest() || now <= STILL * greatest { still + 1 } else { 0 };
-        if end >= span.until || span.at_rest && still >= SAMPLES_AT_REST {
+        if span.at_rest && still >= SAMPLES_AT_REST {
             break;
         }
     }

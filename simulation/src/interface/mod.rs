@@ -6,3 +6,4 @@ pub(crate) mod error;
 pub(crate) mod event;
 pub(crate) mod given_law;
 pub(crate) mod options;
+pub(crate) mod sample_times;

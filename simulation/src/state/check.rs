@@ -14,6 +14,9 @@ pub(crate) fn check(
     let error =
         |contact: Option<usize>, kind: ErrorKind| SimulationError::new(mechanism, state.time, contact, kind);
     let bad = |message: String| Err(error(None, ErrorKind::BadOption(message)));
+    if let Err(message) = Options::check_tolerance(options.relative_tolerance) {
+        return bad(message);
+    }
     for (what, value) in
         [("the absolute tolerance", options.absolute_tolerance), ("the greatest step", options.max_step)]
     {
@@ -23,9 +26,6 @@ pub(crate) fn check(
     }
     if options.absolute_tolerance.is_infinite() {
         return bad("the absolute tolerance is inf: it must be finite".to_owned());
-    }
-    if let Err(message) = Options::check_tolerance(options.relative_tolerance) {
-        return bad(message);
     }
     if !state.time.is_finite() {
         let message = format!("the time of the start is {}: it must be finite", state.time);

@@ -152,7 +152,7 @@ class Mechanism(_native.Mechanism):
         column names: ``m.tabulate("accelerations", frame)``, ``m.tabulate("position", frame, "P")``,
         ``m.tabulate("collide", frame, "tip", mu=0.3, e=0.5, law="poisson")``. ``quantity`` is the name of a method that gives a number, a vector
         or a collision for a state; what else it needs follows. Columns with the names of parameters make one machine for every row. Rates have the name of
-        their coordinate or speed and a prime, vectors x, y, z.
+        their coordinate or speed and a prime, vectors x, y, z; a speed that is called like another column of a collision, such as ``path``, is ``after_path``.
         """
         if quantity not in _COLUMNS:
             raise unknown("quantity for a table", str(quantity), _COLUMNS)
@@ -164,11 +164,13 @@ class Mechanism(_native.Mechanism):
         found = getattr(mechanism, quantity)(*names, **states, **options)
         columns: dict[str, Any]
         if quantity == "collide":
-            columns = {q.name: column for q, column in zip(self.speeds, found.speeds.T)}
+            outcome: dict[str, Any] = {}
             for name, axes in (("impulse", "nts"), ("velocity", "nts"), ("impulse_on_point", "xyz")):
-                columns.update({f"{name}_{axis}": column for axis, column in zip(axes, getattr(found, name).T)})
+                outcome.update({f"{name}_{axis}": column for axis, column in zip(axes, getattr(found, name).T)})
             for name in ("energy_change", "contact_work", "normal_work", "path", "kind"):
-                columns[name] = getattr(found, name)
+                outcome[name] = getattr(found, name)
+            after = {f"after_{q.name}" if q.name in outcome else q.name: column for q, column in zip(self.speeds, found.speeds.T)}
+            columns = {**after, **outcome}
         elif found.ndim == 1:
             columns = {quantity: found}
         else:

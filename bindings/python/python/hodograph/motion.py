@@ -266,11 +266,17 @@ class Simulations:
         return len(self.kind)
 
     def columns(self) -> dict[str, Any]:
-        """All by name, each (k,): ``pandas.DataFrame(motions.columns())``, ``pyarrow.table(motions.columns())``."""
+        """All by name, each (k,): ``pandas.DataFrame(motions.columns())``, ``pyarrow.table(motions.columns())``.
+
+        Coordinates and speeds at the end have their names in the model; one that is called like a column of the outcome,
+        such as ``time``, is ``end_time``.
+        """
         names = ("kind", "time", "rest", "kinetic", "potential", "friction", "impacts", "input_work", "collisions", "events", "several_modes", "message")
         columns = {name: getattr(self, name) for name in names}
         columns["closed"] = ["+".join(names) for names in self.closed]
-        return {**columns, **dict(zip(self.coordinates, self.q.T)), **dict(zip(self.speeds, self.u.T))}
+        for name, column in zip(self.coordinates + self.speeds, [*self.q.T, *self.u.T]):
+            columns[f"end_{name}" if name in columns else name] = column
+        return columns
 
     def __repr__(self) -> str:
         counts = {kind: self.kind.count(kind) for kind in dict.fromkeys(self.kind)}

@@ -134,8 +134,11 @@ fn unit(arguments: &Arguments) -> Outcome {
     let mechanism = InterpretedMechanism::new(machine.mechanism.clone(), machine.program.clone())
         .map_err(|error| Stop::Fault(error.to_string()))?;
     let surfaces = surfaces(&mechanism, &arguments.surface)?;
+    let name = snake_case(&machine.mechanism.name);
+    let offered = emit::interface(&machine.mechanism, &machine.program, &name).map_err(Stop::Fault)?;
     let bytes = fmu::file(&fmu::Unit {
-        module: &snake_case(&machine.mechanism.name),
+        module: &offered.module,
+        kind: &offered.mechanism,
         expanded: &expanded,
         model: &model,
         docs: &sentence(&machine),

@@ -20,6 +20,8 @@ use crate::stop::{Outcome, Stop};
 pub struct Unit<'a> {
     /// name of the module in Rust
     pub module: &'a str,
+    /// name of the mechanism's type
+    pub kind: &'a str,
     /// the text of the generated module
     pub expanded: &'a str,
     /// the model, with its parts written out
@@ -57,8 +59,7 @@ pub fn file(unit: &Unit<'_>) -> Outcome<Vec<u8>> {
     let library = format!(
         "//! The mechanism as a functional mock-up unit (FMI 3.0).\n\nmod mechanism;\n\nhodograph_fmu::export!(\n    {} in crate::mechanism::{},\n    \
          token = \"{token}\",\n    defaults = {stated}\n);\n",
-        hodograph::Mechanism::name(unit.mechanism),
-        unit.module
+        unit.kind, unit.module
     );
     let manifest = manifest(&name, &unit.dependencies);
     let mut files: Vec<(String, Vec<u8>)> = vec![

@@ -4,6 +4,7 @@
 use hodograph_simulation::EventKind;
 
 use super::module::Module;
+use super::names;
 
 /// What motion needs to be known of a mechanism.
 pub struct Motion {
@@ -29,7 +30,7 @@ const FUNCTIONS: [&str; 8] = ["new", "advance", "set_inputs", "time", "state", "
 fn contacts(motion: &Motion) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for contact in &motion.contacts {
-        let mut name = format!("CONTACT_{}", contact.to_uppercase());
+        let mut name = format!("CONTACT_{}", names::ascii(contact).to_uppercase());
         while names.contains(&name) {
             name.push('_');
         }

@@ -23,10 +23,17 @@ fn lists(list: &str, name: &str) -> bool {
     lines.flat_map(str::split_whitespace).any(|word| word == name)
 }
 
+/// A name in the letters that every compiler and linker takes: of others it has the number, `grösse` is
+/// `gru00f6sse`.
+pub fn ascii(name: &str) -> String {
+    let letter = |c: char| if c.is_ascii() { c.to_string() } else { format!("u{:04x}", u32::from(c)) };
+    name.chars().map(letter).collect()
+}
+
 /// The name of an item in C and C++: keywords and macros get an underscore after them, and names that are
 /// reserved for compilers (`_Bool`, `__x`) an x before them.
 pub fn of(name: &str) -> String {
-    let name = name.strip_prefix("r#").unwrap_or(name);
+    let name = &ascii(name.strip_prefix("r#").unwrap_or(name));
     let mut rest = name.chars().skip_while(|c| *c == '_');
     let lines = name.len() - name.trim_start_matches('_').len();
     let kept = lines > 1 || lines == 1 && rest.next().is_some_and(char::is_uppercase);
@@ -89,6 +96,7 @@ pub fn declared_names(module: &Module) -> Vec<String> {
 /// there may be a contact `tip_with_budget`, while the collision of `tip` with a budget is
 /// `collide_tip_with_budget`. `others` are names of other headers of the library.
 pub fn make_unique(module: &mut Module, others: &[String]) {
+    module.routines.iter_mut().for_each(|routine| routine.symbol = ascii(&routine.symbol));
     let bare = Module { routines: Vec::new(), ..module.clone() };
     let own = declared_names(&bare);
     let mut taken: Vec<String> = own.iter().chain(others).map(|name| name.to_lowercase()).collect();
