@@ -435,16 +435,17 @@ fn several_mechanisms_are_in_one_program() {
 #[test]
 fn names_of_any_letters_build() {
     let folder = tempfile::tempdir().unwrap();
-    for (stem, mechanism) in [("box", "box"), ("crate", "crate")] {
+    for (stem, mechanism) in [("box", "Box"), ("crate", "Crate")] {
         let model = folder.path().join(format!("{stem}.mech"));
         let text = format!(
-            "/// ~~~\n/// a box\n/// ~~~\nmechanism {mechanism}; parameters {{ größe: m = 2, m: kg = 1, g: m/s^2 = 9.81 }} \
+            "//! ~~~\n//! a box\n//! ~~~\nmechanism {mechanism}; parameters {{ größe: m = 2, m: kg = 1, g: m/s^2 = 9.81 }} \
              coordinates {{ höhe: m = 1 }} speeds {{ v: m/s }} points {{ Fuß = O + höhe*N.y; }} \
              particles {{ Körper {{ point: Fuß, mass: m }} }} loads {{ gravity: -g*N.y; }} kinematics {{ d(höhe)/dt = v; }} \
              contacts {{ stoß {{ point: Fuß, normal: N.y, gap: höhe - größe/4, surface: {{ e: 0.5 }} }} }}"
         );
         std::fs::write(&model, text).unwrap();
-        assert_eq!(hodograph(&["derive", model.to_str().unwrap()], "").code, 0);
+        let derived = hodograph(&["derive", model.to_str().unwrap()], "");
+        assert_eq!(derived.code, 0, "{}", derived.stderr);
         let exported = export(&model, &folder.path().join("exported"), &[]);
         let header = std::fs::read_dir(exported.join("include")).unwrap().next().unwrap().unwrap().path();
         let header = std::fs::read_to_string(header).unwrap();

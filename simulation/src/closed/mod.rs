@@ -11,4 +11,5 @@ pub(crate) mod scales;
 pub(crate) mod settled_direction;
 pub(crate) mod slip_direction;
 pub(crate) mod torques;
+pub(crate) mod turned_axes;
 pub(crate) mod units;

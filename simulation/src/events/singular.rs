@@ -7,6 +7,7 @@
 use hodograph::{ComponentKind, State, StateError};
 
 use crate::closed::phase::Closed;
+use crate::closed::turned_axes::{turn_of_tangents, turned};
 use crate::integration::motion::{Failure, Motion};
 use crate::integration::stepper::Step;
 use crate::state::transition::Transition;
@@ -64,8 +65,10 @@ impl Transition<'_> {
         };
         let here = partials(q)?;
         let size = here.iter().fold(0.0_f64, |size, number| size.max(number.abs()));
+        // Tangential axes that are chosen by the normal may jump where the point does not.
         let part = |one: &[f64], other: &[f64]| {
-            let apart = one.iter().zip(other).map(|(a, b)| (a - b).abs());
+            let turned = turned(one, turn_of_tangents(one, other));
+            let apart = turned.iter().zip(other).map(|(a, b)| (a - b).abs());
             apart.fold(0.0, f64::max) / size
         };
         let mut most = 0.0_f64;

@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 
 use crate::closed::forces::Hold;
 use crate::closed::phase::{Closed, Phase, Turned, Turning, mus};
+use crate::closed::turned_axes::{along_turned, turn_of_tangents};
 use crate::events::event_location::{Crossing, Functions, first_crossing};
 use crate::events::stage_values::Stages;
 use crate::events::watched::Watched;
@@ -478,7 +479,17 @@ impl Transition<'_> {
                     .map_err(|error| self.failure(Failure::State(error)))?;
                 let slip = Vector2::new(velocity.y, velocity.z);
                 let there = motion.direction(&here.support, place, (slip, began), u);
-                if there.dot(d) < 0.5 && step.h > 2.0 * ENDING * self.front.scales.time {
+                if there.dot(d) >= 0.5 || step.h <= 2.0 * ENDING * self.front.scales.time {
+                    continue;
+                }
+                // Where the tangential axes have jumped, slip has not.
+                let p = u.len();
+                let mut rows = vec![0.0; 3 * p];
+                self.mechanism
+                    .partial_velocities(contact.contact, &state, &mut rows)
+                    .map_err(|error| self.failure(Failure::State(error)))?;
+                let before = &here.support.partials.as_slice()[3 * p * place..][..3 * p];
+                if along_turned(there, turn_of_tangents(&rows, before)).dot(d) < 0.5 {
                     return Ok(false);
                 }
             }

@@ -72,6 +72,10 @@ impl Transition<'_> {
 
     /// Friction of the only closed contact is no longer sufficient.
     fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
+        // Slip that began against the friction has ended at once: it begins in another direction.
+        if self.front.crowd > 2 {
+            return self.look_ahead(&[contact]);
+        }
         let was = self.front.phases.clone();
         let before = self.force_of(contact)?;
         let mark = self.mark();

@@ -14,7 +14,6 @@ use crate::derivation::{self, Limits};
 use crate::evaluate::Machine;
 use crate::export::motion::Motion;
 use crate::export::{Scalar, files, fmu};
-use crate::json::Failure;
 use crate::model;
 use crate::output;
 use crate::stop::{Outcome, Stop};

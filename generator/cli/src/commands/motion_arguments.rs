@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hodograph::State as Borrowed;
-use hodograph_interpreter::{InterpretedMechanism, motion};
+use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 
 use super::simulate::surfaces::{Found, MotionSurfaces};

@@ -7,7 +7,7 @@
 
 mod simplify;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::expr::{Expr, SymbolId, View};
 use hodograph_model::arithmetic::Function;
@@ -67,6 +67,8 @@ pub struct Intermediates {
     calls: HashMap<(Function, Vec<Expr>), SymbolId>,
     pi: Option<SymbolId>,
     bounds: HashMap<SymbolId, Expr>,
+    /// the names whose bounds are the magnitudes of their values
+    bounded_by_themselves: HashSet<SymbolId>,
 }
 
 impl Intermediates {
@@ -340,12 +342,22 @@ impl Intermediates {
         self.name(bound)
     }
 
+    /// From here on the bound of a name is the magnitude of its value. Bounds of iterations, in which each step is made of the
+    /// last, would be many powers of ten above the values, and divisors count as zero that are not.
+    pub fn bound_by_itself(&mut self, name: &Expr) {
+        if let View::Symbol(symbol) = name.view() {
+            self.bounded_by_themselves.insert(symbol);
+        }
+    }
+
     fn bound_of_symbol(&mut self, symbol: SymbolId) -> Expr {
         if let Some(bound) = self.bounds.get(&symbol) {
             return bound.clone();
         }
         use Function::*;
+        let own = self.bounded_by_themselves.contains(&symbol);
         let bound = match self.meanings[symbol as usize].clone() {
+            Meaning::Named(_) if own => self.call(Abs, vec![Expr::symbol(symbol)]),
             Meaning::Named(value) => match self.bound(&value) {
                 bound if digits(&bound) <= MOST_DIGITS && !is_wide(&bound) => bound,
                 _ => self.call(Abs, vec![Expr::symbol(symbol)]),

@@ -87,6 +87,9 @@ impl Kinematics<'_> {
             DefinitionValue::Vector(_) => Expr::zero(),
         };
         let value = self.z.name(value);
+        if mechanism.definitions[id.0].of_shapes {
+            self.z.bound_by_itself(&value);
+        }
         self.definitions.scalars[id.0] = Some(value.clone());
         value
     }

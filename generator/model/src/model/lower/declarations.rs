@@ -19,6 +19,7 @@ impl Lowering<'_> {
                 name: definition.name.text.clone(),
                 docs: definition.docs.clone(),
                 value: DefinitionValue::Vector(Vector::Zero),
+                of_shapes: false,
                 span: definition.name.span,
             });
         }

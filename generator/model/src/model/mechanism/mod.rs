@@ -136,6 +136,9 @@ pub struct Definition {
     pub docs: String,
     /// what it stands for
     pub value: DefinitionValue,
+    /// an expression of shapes, of which others are made: the terms of a divisor, with which it is compared, are as
+    /// large as their values
+    pub of_shapes: bool,
     /// where it is declared
     pub span: Span,
 }

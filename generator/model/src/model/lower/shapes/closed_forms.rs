@@ -176,8 +176,8 @@ fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
 /// them are not known then, and the distance does not depend on them but for rounding.
 const PARALLEL: (i64, i64) = (1, 1_000_000_000_000);
 
-/// A capsule on another: the nearest points of two segments, each held within its segment and then found again for
-/// the other (section 16.8).
+/// A capsule on another: the nearest points of two segments, each held within its segment, and found again where the
+/// other is beyond an end (section 16.8).
 fn on_capsule(first: &Shape, second: &Shape, at: Span) -> Touch {
     let ([r, l], [other, length]) = (&first.sizes[..], &second.sizes[..]) else {
         return on_solid(first, second, at);
@@ -189,8 +189,13 @@ fn on_capsule(first: &Shape, second: &Shape, at: Span) -> Touch {
     let apart = greater(dot(&across, &across), ratio(PARALLEL.0, PARALLEL.1));
     let free = quotient(less(product([along.clone(), d_b.clone()]), d_a.clone()), apart, at);
     let guess = between_bounds(free, &half(l));
-    let there = between_bounds(sum([d_b, product([along.clone(), guess])]), &half(length));
-    let here = between_bounds(less(product([along, there.clone()]), d_a), &half(l));
+    let unheld = sum([d_b, product([along.clone(), guess.clone()])]);
+    let there = between_bounds(unheld.clone(), &half(length));
+    // Only beyond an end of the second is the place on the first another one: found again where it is the same, rounding
+    // would hold one of the two at an end and not the other.
+    let beyond = step(less(size(unheld), half(length)));
+    let again = between_bounds(less(product([along, there.clone()]), d_a), &half(l));
+    let here = sum([product([beyond.clone(), again]), product([less(integer(1), beyond), guess])]);
     let w = total([d, scaled(here.clone(), &a), opposite(&scaled(there, &b))]);
     let normal = unit(&w, at);
     let point = first.at.plus(total([scaled(here, &a), opposite(&scaled(r.clone(), &normal))]));

@@ -37,7 +37,8 @@ impl<'d> Shared<'d> {
 
     fn keep(&mut self, value: DefinitionValue, what: &str) -> DefinitionId {
         let name = format!("{what} of {}", self.of);
-        self.definitions.push(Definition { name, docs: String::new(), value, span: self.at });
+        let definition = Definition { name, docs: String::new(), value, of_shapes: true, span: self.at };
+        self.definitions.push(definition);
         DefinitionId(self.definitions.len() - 1)
     }
 }
