@@ -18,7 +18,7 @@ fn a_start_at_no_time_is_refused() {
     for time in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let state = State { time, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
         let found = Simulation::new(&body, &state, surface(0.0, 0.5, Law::Newton));
-        let error = found.err().expect("no motion begins at no time");
+        let error = found.expect_err("no motion begins at no time");
         assert!(matches!(error.kind, ErrorKind::Argument { cause: Cause::NotFinite, .. }), "{error}");
         assert!(error.to_string().contains("the time of the start is"), "{error}");
     }
@@ -41,7 +41,7 @@ fn tolerances_without_a_digit_are_refused() {
             ..surface(0.0, 0.5, Law::Newton)
         };
         let state = State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
-        let error = Simulation::new(&body, &state, options).err().expect("such a tolerance means nothing");
+        let error = Simulation::new(&body, &state, options).expect_err("such a tolerance means nothing");
         assert!(matches!(&error.kind, ErrorKind::BadOption(text) if text.contains("tolerance")), "{error}");
     }
 }

@@ -15,7 +15,7 @@ use crate::events::watched::Watched;
 use crate::integration::motion::{DIRECTION, Evaluation, Failure};
 use crate::integration::stepper::{Step, Within};
 use crate::state::transition::Transition;
-use crate::{ErrorKind, SimulationError};
+use crate::{ErrorKind, EventFunction, SimulationError};
 
 /// A contact that lifts off counts as open if its gap is above this part of the length of the problem.
 pub(crate) const LIFTED: f64 = 5e-11;
@@ -126,14 +126,14 @@ impl Transition<'_> {
         for (index, function) in self.options.events.iter().enumerate() {
             let value = function(self.front.t, q, u);
             watched.push(Watched::User(index, if value < 0.0 { -1.0 } else { 1.0 }));
-            noise.push(self.rounding_of_function(&**function, value));
+            noise.push(self.rounding_of_function(function, value));
         }
         (watched, noise)
     }
 
     /// A bound of the rounding error of an event function of the user that has this value at the front: that of its terms,
     /// whose sizes are its changes under relative changes of what it is of.
-    fn rounding_of_function(&self, function: &dyn Fn(f64, &[f64], &[f64]) -> f64, value: f64) -> f64 {
+    fn rounding_of_function(&self, function: &EventFunction, value: f64) -> f64 {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let count = n + self.mechanism.count(ComponentKind::Speed);
         let mut moved = self.front.y[..count].to_vec();
