@@ -420,7 +420,7 @@ fn forces_carry_derivatives() {
 fn the_force_of_slip_does_not_depend_on_its_size() {
     let m = ReducedMatrix { nn: 1.0, nt: 0.1, ns: 0.0, tt: 1.2, ts: 0.05, ss: 0.9 };
     let (beta, mu) = (Vector3::new(-9.81, 0.3, -0.2), 0.5);
-    let at = |size: f64| contact_mode(&m, &beta, &Vector2::new(2.0 * size, -1.0 * size), mu).unwrap();
+    let at = |size: f64| contact_mode(&m, &beta, &Vector2::new(2.0 * size, -size), mu).unwrap();
     let one = at(1.0);
     assert_eq!(one.mode, ContactMode::Slide);
     for exponent in [-1000, -600, -520, 520, 600, 1000] {
