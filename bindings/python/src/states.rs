@@ -110,5 +110,7 @@ impl States<'_> {
 
 /// Whether all numbers are finite. A block has no branch, so that several are compared at once.
 fn are_finite(numbers: &[f64]) -> bool {
-    numbers.chunks(64).all(|block| block.iter().fold(true, |finite, number| finite & (number.abs() <= f64::MAX)))
+    numbers
+        .chunks(64)
+        .all(|block| block.iter().fold(true, |finite, number| finite & (number.abs() <= f64::MAX)))
 }
