@@ -447,8 +447,9 @@ fn names_of_any_letters_build() {
         let derived = hodograph(&["derive", model.to_str().unwrap()], "");
         assert_eq!(derived.code, 0, "{}", derived.stderr);
         let exported = export(&model, &folder.path().join("exported"), &[]);
-        let header = std::fs::read_dir(exported.join("include")).unwrap().next().unwrap().unwrap().path();
-        let header = std::fs::read_to_string(header).unwrap();
+        let headers = std::fs::read_dir(exported.join("include")).unwrap();
+        let texts = headers.map(|header| std::fs::read_to_string(header.unwrap().path()).unwrap());
+        let header: String = texts.collect();
         let code: String = header.lines().filter(|line| line.contains('(')).collect();
         assert!(code.contains("_gap_stou00df(") && code.contains("_collide_stou00df("), "{header}");
         build(&exported);
