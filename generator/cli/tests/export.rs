@@ -435,6 +435,8 @@ fn several_mechanisms_are_in_one_program() {
 #[test]
 fn names_of_any_letters_build() {
     let folder = tempfile::tempdir().unwrap();
+    let into = folder.path().join("exported");
+    std::fs::create_dir(&into).unwrap();
     for (stem, mechanism) in [("box", "Box"), ("crate", "Crate")] {
         let model = folder.path().join(format!("{stem}.mech"));
         let text = format!(
@@ -446,7 +448,7 @@ fn names_of_any_letters_build() {
         std::fs::write(&model, text).unwrap();
         let derived = hodograph(&["derive", model.to_str().unwrap()], "");
         assert_eq!(derived.code, 0, "{}", derived.stderr);
-        let exported = export(&model, &folder.path().join("exported"), &[]);
+        let exported = export(&model, &into, &[]);
         let headers = std::fs::read_dir(exported.join("include")).unwrap();
         let texts = headers.map(|header| std::fs::read_to_string(header.unwrap().path()).unwrap());
         let header: String = texts.collect();
