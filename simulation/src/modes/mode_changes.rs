@@ -15,6 +15,9 @@ use crate::{ErrorKind, EventKind, SimulationError};
 /// The first step after slip begins, relative to the time of the problem.
 pub(crate) const FIRST: f64 = 5e-7;
 
+/// After this many events at one time the motion just after them decides how slip begins.
+const AT_ONCE: usize = 2;
+
 /// The condition of a mode that is violated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending {
@@ -73,7 +76,7 @@ impl Transition<'_> {
     /// Friction of the only closed contact is no longer sufficient.
     fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
         // Slip that began against the friction has ended at once: it begins in another direction.
-        if self.front.crowd > 2 {
+        if self.front.crowd > AT_ONCE {
             return self.look_ahead(&[contact]);
         }
         let was = self.front.phases.clone();
