@@ -21,6 +21,7 @@ mod exact;
 mod examples;
 mod exchange;
 mod faces;
+mod force_jumps;
 mod implicit;
 mod inclines;
 mod ledge;

@@ -189,6 +189,22 @@ pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Margins {
         .collect()
 }
 
+/// The [`margins`] of all contacts, without that of friction where they slide, relative to the largest force, which is
+/// not below `least`, N.
+pub(crate) fn relative_margins(
+    forces: &Forces,
+    holds: &[Hold],
+    mu: &[f64],
+    least: f64,
+) -> SmallVec<[f64; 2 * FEW]> {
+    let size = forces.lambda.amax().max(least);
+    let of = |(&[normal, cone], hold): (&[f64; 2], &Hold)| match hold {
+        Hold::Slide(_) => [Some(normal / size), None],
+        Hold::Stick => [Some(normal / size), Some(cone / (size * size))],
+    };
+    margins(forces, holds, mu).iter().zip(holds).flat_map(of).flatten().collect()
+}
+
 /// Whether all conditions of the modes are satisfied.
 pub(crate) fn hold_good(forces: &Forces, holds: &[Hold], mu: &[f64]) -> bool {
     margins(forces, holds, mu).iter().flatten().all(|&margin| margin >= 0.0)

@@ -9,7 +9,7 @@ use hodograph::State;
 use nalgebra::Vector2;
 
 use crate::closed::closed_contacts::ClosedContacts;
-use crate::closed::forces::{Lacking, margins};
+use crate::closed::forces::{Lacking, relative_margins};
 use crate::closed::mode_selection::{Choice, Decision, Question};
 use crate::closed::phase::{Closed, Phase, mus};
 use crate::integration::motion::{Evaluation, Failure, NO_SLIP};
@@ -149,11 +149,8 @@ impl Transition<'_> {
         let evaluation = self.motion(closed).evaluate(step.t + step.h, &step.end).ok()?;
         let Some(forces) = &evaluation.forces else { return Some((true, true)) };
         let forward = slips_forward(closed, &evaluation);
-        let margins = margins(forces, &evaluation.holds, &mus(closed));
-        let fits = forward && margins.iter().flatten().all(|margin| *margin >= 0.0);
-        let size = forces.lambda.amax().max(forces.rounding / CLEAR);
-        let relative: Vec<f64> =
-            margins.iter().flat_map(|[normal, cone]| [normal / size, cone / (size * size)]).collect();
+        let relative = relative_margins(forces, &evaluation.holds, &mus(closed), forces.rounding / CLEAR);
+        let fits = forward && relative.iter().all(|margin| *margin >= 0.0);
         let violated = relative.iter().any(|margin| *margin < -CLEAR);
         let near = relative.iter().any(|margin| margin.abs() <= CLEAR);
         Some((!forward || violated || !near, fits))

@@ -15,9 +15,6 @@ use crate::{ErrorKind, EventKind, SimulationError};
 /// The first step after slip begins, relative to the time of the problem.
 pub(crate) const FIRST: f64 = 5e-7;
 
-/// After this many events at one time the motion just after them decides how slip begins.
-const AT_ONCE: usize = 2;
-
 /// The condition of a mode that is violated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending {
@@ -69,16 +66,16 @@ impl Transition<'_> {
         match (closed.len(), by) {
             (1, Ending::Friction) => self.begin_slip(contact),
             (1, Ending::NormalForce) => self.lift_off(contact),
-            _ => self.look_ahead(&closed),
+            _ => {
+                self.go_past_a_jump()?;
+                self.look_ahead(&closed)
+            }
         }
     }
 
     /// Friction of the only closed contact is no longer sufficient.
     fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
-        // Slip that began against the friction has ended at once: it begins in another direction.
-        if self.front.crowd > AT_ONCE {
-            return self.look_ahead(&[contact]);
-        }
+        self.go_past_a_jump()?;
         let was = self.front.phases.clone();
         let before = self.force_of(contact)?;
         let mark = self.mark();
