@@ -4,7 +4,7 @@ use crate::common::{first, names, run, start, surface};
 use ball_on_ledge::BallOnLedge;
 use block_on_ledge::BlockOnLedge;
 use hodograph::Law;
-use hodograph_simulation::{ContactPhase, EventKind, Simulation};
+use hodograph_simulation::{ContactPhase, Event, EventKind, Simulation};
 
 hodograph::mechanism!("tests/models/ball_on_ledge.mech");
 hodograph::mechanism!("tests/models/block_on_ledge.mech");
@@ -92,6 +92,27 @@ fn a_block_tips_when_its_mass_centre_passes_the_edge() {
     assert!(matches!(last.kind, EventKind::LiftOff { .. }), "{:?}", names(&events));
     let there = integrate(begin, last.time - tips, 4000);
     assert!(there[2] < -0.3 && on_the_edge(&there).1.abs() < 1e-7, "{there:?}");
+}
+
+/// A fast block leaves the ledge where its side ends, while the edge still presses: the trailing vertex passes the corner of
+/// the ledge.
+#[test]
+fn a_fast_block_leaves_where_its_side_ends() {
+    let block = BlockOnLedge::<f64>::default();
+    for speed in [1.4, 2.0, 2.5, 3.0, 5.0, 8.0] {
+        let mut simulation =
+            start(&block, &[-0.5, 0.1, 0.0], &[speed, 0.0, 0.0], surface(0.0, 0.0, Law::Newton));
+        let events = run(&mut simulation, 1.0);
+        let leaves =
+            |event: &&Event| event.contact == Some(EDGE) && matches!(event.kind, EventKind::LiftOff { .. });
+        let last = events.iter().find(leaves).unwrap_or_else(|| panic!("{speed}: {:?}", names(&events)));
+        let tips = 0.5 / speed;
+        let there = integrate([0.0, 0.1, 0.0, speed, 0.0, 0.0], last.time - tips, 4000);
+        let (sin, cos) = there[2].sin_cos();
+        let along = there[0] * cos + there[1] * sin;
+        let force = on_the_edge(&there).1;
+        assert!((along - 0.5 * SIDES[0]).abs() < 1e-7 && force > 0.5, "{speed}: {along} {force}");
+    }
 }
 
 /// With friction a block whose mass centre hangs over turns about the edge. It falls to the floor, comes to rest

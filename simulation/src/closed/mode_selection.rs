@@ -11,9 +11,9 @@ use hodograph::{ContactError, ContactMode, Selection, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
 use crate::closed::closed_contacts::{ClosedContacts, least_squares};
-use crate::closed::forces::{Forces, Lacking};
+use crate::closed::forces::{Forces, Hold, Lacking, forces};
 use crate::closed::pair::Friction;
-use crate::contact_problem::{self, MOST_ENUMERATED, Mode, Problem, Unsolved};
+use crate::contact_problem::{self, MOST_ENUMERATED, Mode, Problem, Unsolved, Wanted};
 
 /// The mode of a closed contact after an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,33 @@ pub(crate) enum Decision {
     Stick,
     /// Sliding along a direction; and whether slip begins now.
     Slide(Vector2<f64>, bool),
+}
+
+impl Decision {
+    /// The direction in which slip begins, if it does.
+    pub fn begins(&self) -> Option<Vector2<f64>> {
+        match self {
+            Self::Slide(direction, true) => Some(*direction),
+            _ => None,
+        }
+    }
+
+    /// The mode that lasts, unless it is that of an open contact.
+    fn hold(&self) -> Option<Hold> {
+        match self {
+            Self::Separate => None,
+            Self::Stick => Some(Hold::Stick),
+            Self::Slide(direction, _) => Some(Hold::Slide(*direction)),
+        }
+    }
+
+    /// Whether another decision is for the same mode.
+    pub fn is_of_kind(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Slide(_, begins), Self::Slide(_, other)) => begins == other,
+            _ => std::mem::discriminant(self) == std::mem::discriminant(other),
+        }
+    }
 }
 
 /// Decisions for all closed contacts.
@@ -55,6 +82,41 @@ impl Question {
     /// Chooses the modes; see [`choose`].
     pub fn choose(&self, before: &DVector<f64>) -> Result<Choice, Lacking> {
         choose(&self.support, &self.slips, &self.friction, before)
+    }
+
+    /// A choice with directions of beginning slip in which no acceleration is left across them but rounding: differences
+    /// of forces as large as the certificate allows turn slow slip. The same choice where there are none so near.
+    pub fn with_exact_directions(&self, mut choice: Choice) -> Choice {
+        let begin: Vec<(usize, usize)> = (0..self.slips.len())
+            .filter(|&i| choice.decisions[i].begins().is_some())
+            .map(|place| (place, place))
+            .collect();
+        let known: Option<Vec<Hold>> = choice.decisions.iter().map(Decision::hold).collect();
+        let Some(known) = known else { return choice };
+        let mu: Vec<f64> = self
+            .friction
+            .iter()
+            .zip(&known)
+            .map(|(mu, hold)| if hold.direction().is_some() { mu.slips } else { mu.sticks })
+            .collect();
+        let mut directions: Vec<Option<Vector2<f64>>> = known.iter().map(Hold::direction).collect();
+        let forces = |directions: &[Option<Vector2<f64>>]| {
+            let holds: Vec<Hold> = directions.iter().map(|d| d.map_or(Hold::Stick, Hold::Slide)).collect();
+            forces(&self.support, &holds, &mu, None, Wanted::Acceleration).ok()
+        };
+        begin_along(&begin, &mut directions, &vec![0.0; begin.len()], forces);
+        let turned = |&(place, _): &(usize, usize)| match (directions[place], known[place].direction()) {
+            (Some(found), Some(before)) => (found - before).norm(),
+            _ => f64::INFINITY,
+        };
+        if begin.iter().map(turned).fold(0.0, f64::max) <= EXACT {
+            for &(place, _) in &begin {
+                if let Some(direction) = directions[place] {
+                    choice.decisions[place] = Decision::Slide(direction, true);
+                }
+            }
+        }
+        choice
     }
 
     /// Whether other modes than the chosen ones were possible. They are looked for, which may cost more than the choice.
@@ -369,6 +431,8 @@ pub(crate) fn begin_along(
     (residual.amax() <= ALONG * free.get()).then_some(())
 }
 
+/// Directions that turn by more than this are others than those that were chosen, rad.
+const EXACT: f64 = 1e-3;
 /// Largest number of Newton steps, the difference of angles for its derivatives, and angles below which only
 /// rounding prevents further decrease, rad.
 const TURNS: usize = 30;

@@ -29,6 +29,10 @@ const TRIALS: usize = 8;
 const CLEAR: f64 = 1e-10;
 /// After this many events without progress, decided modes are confirmed.
 const DOUBT: usize = 4;
+/// The times ahead, relative to that of the problem, whose directions of beginning slip are extrapolated to the event, and
+/// how often shorter ones are tried where the modes are others there.
+const DIRECTIONS: [f64; 2] = [4e-6, 1.6e-5];
+const NEARER: i32 = 3;
 /// Number of modes that are tried before the last ones are accepted.
 const ROUNDS: usize = 6;
 
@@ -59,7 +63,8 @@ impl Transition<'_> {
             return match self.chosen_at(contacts, &was, &step)? {
                 // Nothing changes: the conditions are violated by no more than the errors of the state.
                 Ok((_, choice)) if self.go_on(contacts, &choice) => break,
-                Ok((question, choice)) => {
+                Ok((question, mut choice)) => {
+                    self.find_directions(&closed, contacts, &was, &mut choice);
                     self.begin_from_rest(contacts, &choice)?;
                     self.apply_and_confirm(contacts, &was, (question, choice))
                 }
@@ -70,6 +75,38 @@ impl Transition<'_> {
         match last {
             Some(mut step) => self.commit(&mut step),
             None => self.decide(contacts, &was),
+        }
+    }
+
+    /// Finds the directions in which slip begins together: the limit of those at two times ahead. Just after the event all
+    /// accelerations are as small as rounding, and the directions that follow from them are not known.
+    fn find_directions(&self, closed: &[Closed], contacts: &[usize], was: &[Phase], choice: &mut Choice) {
+        let beginning = choice.decisions.iter().filter(|decision| decision.begins().is_some()).count();
+        if beginning < 2 {
+            return;
+        }
+        for shorter in 0..NEARER {
+            let ahead = DIRECTIONS.map(|ahead| ahead * self.front.scales.time / LONGER.powi(2 * shorter));
+            let at = |time: f64| -> Option<Vec<Decision>> {
+                let step = self.part(closed, time)?;
+                let (question, choice) = self.chosen_at(contacts, was, &step).ok()?.ok()?;
+                Some(question.with_exact_directions(choice).decisions)
+            };
+            let [Some(first), Some(second)] = ahead.map(at) else { continue };
+            let share = ahead[0] / (ahead[1] - ahead[0]);
+            let limits = choice.decisions.iter().zip(first.iter().zip(&second)).map(
+                |(decided, (first, second))| match (decided, first.begins(), second.begins()) {
+                    (Decision::Slide(_, true), Some(first), Some(second)) => {
+                        let limit = first + (first - second) * share;
+                        Some(Decision::Slide(limit.normalize(), true))
+                    }
+                    _ => (decided.is_of_kind(first) && decided.is_of_kind(second)).then_some(*decided),
+                },
+            );
+            if let Some(limits) = limits.collect::<Option<Vec<Decision>>>() {
+                choice.decisions = limits;
+                return;
+            }
         }
     }
 

@@ -15,6 +15,9 @@ use crate::{ErrorKind, EventKind, SimulationError};
 /// The first step after slip begins, relative to the time of the problem.
 pub(crate) const FIRST: f64 = 5e-7;
 
+/// Times after which all rates vanish where the mechanism is at rest, relative to the time of the problem.
+const STILL: [f64; 3] = [0.0, 1e-4, 1e-2];
+
 /// The condition of a mode that is violated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending {
@@ -369,8 +372,12 @@ impl Transition<'_> {
         let mut y = self.front.y.clone();
         y[n..n + p].fill(0.0);
         self.front.resting = true;
-        let rates = self.motion(&closed).evaluate(self.front.t, &y).map(|evaluation| evaluation.rates);
-        let quiet = rates.is_ok_and(|rates| rates[..n + p].iter().all(|rate| *rate == 0.0));
+        // Where loads depend on time, rates that vanish now need not do so afterwards.
+        let quiet = STILL.iter().all(|after| {
+            let later = self.front.t + after * self.front.scales.time;
+            let rates = self.motion(&closed).evaluate(later, &y).map(|evaluation| evaluation.rates);
+            rates.is_ok_and(|rates| rates[..n + p].iter().all(|rate| *rate == 0.0))
+        });
         if quiet {
             self.front.y = y;
             if let Some((step, _)) = self.steps.last_mut() {

@@ -16,6 +16,10 @@ const NOTHING: f64 = 1e-100;
 impl Transition<'_> {
     /// Accepts the end of a step as the new front.
     pub(crate) fn commit(&mut self, step: &mut Step) -> Result<(), SimulationError> {
+        let moving =
+            self.mechanism.count(ComponentKind::Coordinate) + self.mechanism.count(ComponentKind::Speed);
+        // What depends on time may set a mechanism in motion that was at rest.
+        self.front.resting &= step.start()[..moving] == step.end[..moving];
         let modes = self.modes();
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
@@ -25,9 +29,8 @@ impl Transition<'_> {
         step.corrected(&self.front.y);
         self.arm(step)?;
         let n = self.mechanism.count(ComponentKind::Coordinate);
-        let p = self.mechanism.count(ComponentKind::Speed);
         if let Some(parts) = &mut self.parts {
-            parts.add(step, &modes, &self.front.y[..n + p]);
+            parts.add(step, &modes, &self.front.y[..moving]);
         }
         self.steps.push((step.clone(), modes));
         for (scale, speed) in self.front.scale.iter_mut().zip(&self.front.y[n..]) {
