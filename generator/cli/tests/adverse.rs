@@ -8,10 +8,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{ALL_JOINTS, hodograph, model};
+use crate::common::{ALL_JOINTS, hodograph, model, tool};
 
-fn tool() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hodograph"));
+fn silent() -> Command {
+    let mut command = Command::new(tool());
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
@@ -60,7 +60,7 @@ fn commands(folder: &Path) -> Vec<(Vec<String>, i32)> {
 fn standard_error_may_be_full() {
     let folder = folder();
     for (arguments, code) in commands(folder.path()) {
-        let status = tool().args(&arguments).stderr(full()).status().unwrap();
+        let status = silent().args(&arguments).stderr(full()).status().unwrap();
         assert_eq!(status.code(), Some(code), "{arguments:?}");
     }
 }
@@ -69,7 +69,7 @@ fn standard_error_may_be_full() {
 fn results_that_cannot_be_written_are_a_fault() {
     let folder = folder();
     for (arguments, code) in commands(folder.path()) {
-        let output = tool().args(&arguments).stdout(full()).stderr(Stdio::piped()).output().unwrap();
+        let output = silent().args(&arguments).stdout(full()).stderr(Stdio::piped()).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(!said.contains("panicked"), "{arguments:?}: {said}");
         // what says nothing on standard output is as always
@@ -86,7 +86,7 @@ fn a_reader_that_leaves_does_not_change_what_a_check_finds() {
     for (arguments, code) in commands(folder.path()) {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
-        let output = tool().args(&arguments).stdout(writer).stderr(Stdio::piped()).output().unwrap();
+        let output = silent().args(&arguments).stdout(writer).stderr(Stdio::piped()).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(!said.contains("panicked"), "{arguments:?}: {said}");
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
@@ -94,11 +94,8 @@ fn a_reader_that_leaves_does_not_change_what_a_check_finds() {
     // one wrong line before the reader leaves
     let script =
         "(echo nonsense; echo \"$CASE\"; echo \"$CASE\") | $TOOL solve | true; exit ${PIPESTATUS[1]}";
-    let status = Command::new("bash")
-        .args(["-c", script])
-        .env("TOOL", env!("CARGO_BIN_EXE_hodograph"))
-        .env("CASE", COLLISION)
-        .status();
+    let status =
+        Command::new("bash").args(["-c", script]).env("TOOL", tool()).env("CASE", COLLISION).status();
     assert_eq!(status.unwrap().code(), Some(1));
 }
 
@@ -112,8 +109,13 @@ fn names_do_not_reach_the_terminal_as_they_are() {
         [["check"].as_slice(), &["derive", "--check"], &["eval"], &["expand"], &["explain"], &["import"]]
     {
         for path in [&evil, &unreadable] {
-            let output =
-                tool().args(words).arg(path).stdout(Stdio::piped()).stderr(Stdio::piped()).output().unwrap();
+            let output = silent()
+                .args(words)
+                .arg(path)
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped())
+                .output()
+                .unwrap();
             assert!(matches!(output.status.code(), Some(1 | 2)), "{words:?}");
             for text in [output.stdout, output.stderr] {
                 let text = String::from_utf8(text).unwrap();
@@ -132,8 +134,13 @@ fn names_that_are_no_text_are_names() {
     for words in
         [["check", "--"].as_slice(), &["derive", "--"], &["eval", "--"], &["derive", "--check", "--"]]
     {
-        let output =
-            tool().args(words).arg(name).current_dir(folder.path()).stderr(Stdio::piped()).output().unwrap();
+        let output = silent()
+            .args(words)
+            .arg(name)
+            .current_dir(folder.path())
+            .stderr(Stdio::piped())
+            .output()
+            .unwrap();
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{words:?}: {said}");
     }
@@ -152,7 +159,7 @@ fn what_is_no_file_is_refused_at_once() {
     let start = Instant::now();
     for name in ["pipe.mech", "folder.mech", "loop.mech", "huge.mech"] {
         for command in ["check", "eval", "expand", "explain", "import", "derive"] {
-            let status = tool().arg(command).arg(at(name)).status().unwrap();
+            let status = silent().arg(command).arg(at(name)).status().unwrap();
             assert!(matches!(status.code(), Some(1 | 2)), "{command} {name}: {status}");
         }
     }
@@ -161,7 +168,7 @@ fn what_is_no_file_is_refused_at_once() {
     for name in ["pipe.mech", "loop.mech", "huge.mech"] {
         fs::remove_file(at(name)).unwrap();
     }
-    assert_eq!(tool().arg("check").arg(folder.path()).status().unwrap().code(), Some(0));
+    assert_eq!(silent().arg("check").arg(folder.path()).status().unwrap().code(), Some(0));
     assert!(start.elapsed() < Duration::from_secs(600), "{:?}", start.elapsed());
 }
 
@@ -173,7 +180,7 @@ fn an_interrupted_derivation_leaves_nothing() {
     [&models, &temporary].into_iter().for_each(|path| fs::create_dir(path).unwrap());
     fs::copy(model("arm_7dof"), models.join("arm_7dof.mech")).unwrap();
     for (signal, number) in [("INT", 2), ("TERM", 15)] {
-        let mut child = tool().arg("derive").arg(&models).env("TMPDIR", &temporary).spawn().unwrap();
+        let mut child = silent().arg("derive").arg(&models).env("TMPDIR", &temporary).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(700));
         let id = child.id().to_string();
         assert!(Command::new("kill").args([&format!("-{signal}"), &id]).status().unwrap().success());
@@ -196,7 +203,7 @@ fn what_lies_in_the_way_is_not_written_through() {
         let name = format!(".two_sleds.derivation.{id}.tmp");
         std::os::unix::fs::symlink(&victim, folder.path().join(name)).unwrap();
     }
-    let status = tool().arg("derive").arg(folder.path().join("two_sleds.mech")).status().unwrap();
+    let status = silent().arg("derive").arg(folder.path().join("two_sleds.mech")).status().unwrap();
     assert!(status.success());
     assert_eq!(fs::read_to_string(&victim).unwrap(), "mine");
     assert!(folder.path().join("two_sleds.derivation").is_file());

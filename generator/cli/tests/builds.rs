@@ -26,7 +26,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn tool() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hodograph"));
+    let mut command = Command::new(crate::common::tool());
     command.stdin(Stdio::null());
     command
 }

@@ -1,12 +1,11 @@
 //! Runs the examples of the documentation and compares their output with that in the pages.
 #![cfg(unix)]
 
-use std::path::Path;
 use std::process::Command;
 
 use hodograph::Cause;
 
-use crate::common::{hodograph, root};
+use crate::common::{hodograph, root, tool};
 
 /// The commands of a page and the lines that it shows for each.
 fn examples(page: &str) -> Vec<(String, Vec<String>)> {
@@ -113,7 +112,8 @@ fn the_figure_of_the_readme_is_fresh() {
 
 #[test]
 fn examples_run_as_shown() {
-    let folder = Path::new(env!("CARGO_BIN_EXE_hodograph")).parent().unwrap();
+    let tool = tool();
+    let folder = tool.parent().unwrap();
     let path = format!("{}:{}", folder.display(), std::env::var("PATH").unwrap_or_default());
     std::fs::create_dir_all(root().join("target")).unwrap();
     for page in ["docs/json.md", "docs/cli.md"] {

@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{hodograph, model, number};
+use crate::common::{hodograph, model, number, tool};
 use serde_json::Value;
 
 fn place(folder: &tempfile::TempDir, name: &str) -> String {
@@ -289,7 +289,7 @@ fn changes_are_checked_as_they_are_saved() {
     let folder = tempfile::tempdir().unwrap();
     let path = place(&folder, "rod.mech");
     fs::write(&path, WRONG).unwrap();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+    let mut child = Command::new(tool())
         .args(["check", "--watch", &path])
         .stdout(Stdio::null())
         .stderr(Stdio::piped())

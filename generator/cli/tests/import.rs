@@ -251,6 +251,23 @@ fn the_power_of_the_inputs_is_the_rate_of_the_kinetic_energy() {
     assert!((rate - power).abs() < 1e-7 * number(&answer["kinetic_energy"]).max(1.0), "{rate} {power}");
 }
 
+/// Products of inertia that are zero stay zero, and the moments are those of the file, in the optimised tool too.
+#[test]
+fn moments_of_inertia_are_those_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("leg.urdf").display().to_string();
+    let robot = "<robot name=\"leg\"><link name=\"base\"/><link name=\"leg\"><inertial><mass value=\"1\"/>\
+        <inertia ixx=\"1\" iyy=\"2\" izz=\"2.5\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
+        <joint name=\"hip\" type=\"revolute\"><parent link=\"base\"/><child link=\"leg\"/></joint></robot>";
+    std::fs::write(&path, robot).unwrap();
+    let run = hodograph(&["import", &path], "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for entry in ["Ixx_leg: kg*m^2 = 1,", "Iyy_leg: kg*m^2 = 2,", "Izz_leg: kg*m^2 = 2.5,"] {
+        assert!(run.stdout.contains(entry), "{}", run.stdout);
+    }
+    assert!(run.stdout.contains("inertia: [Ixx_leg, Iyy_leg, Izz_leg]"), "{}", run.stdout);
+}
+
 #[test]
 fn what_cannot_be_imported_is_said_with_its_place() {
     let folder = tempfile::tempdir().unwrap();

@@ -152,7 +152,7 @@ fn compilers_derive_at_once() {
     if let Some((_, command)) = commands.last_mut() {
         command.arg("-O");
     }
-    let mut tool = Command::new(env!("CARGO_BIN_EXE_hodograph"));
+    let mut tool = Command::new(crate::common::tool());
     tool.arg("derive").arg(&derived).stdin(Stdio::null());
     commands.push(("the tool", tool));
     std::thread::scope(|scope| {

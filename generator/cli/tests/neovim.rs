@@ -57,7 +57,7 @@ fn a_model_is_edited_in_neovim() {
     std::fs::write(at("slider_crank.mech"), text.replacen("l1/2*A.x", "l1x/2*A.x", 1)).unwrap();
     std::fs::write(at("client.lua"), SCRIPT).unwrap();
     std::fs::create_dir(at("home")).unwrap();
-    let path = format!("let g:hodograph_path = '{}'", env!("CARGO_BIN_EXE_hodograph"));
+    let path = format!("let g:hodograph_path = '{}'", crate::common::tool().display());
     let output = Command::new("nvim")
         .args(["--headless", "--clean", "--cmd", &path])
         .arg("--cmd")

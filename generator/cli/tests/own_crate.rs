@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::common::root;
+use crate::common::{root, tool};
 
 /// The block of a page after `heading` that begins with this fence, and its text.
 fn block(page: &str, heading: &str, fence: &str) -> String {
@@ -67,7 +67,7 @@ fn half_of_it() {
     }
     // the versions that the workspace uses are there without a network
     std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    succeeds(Command::new(env!("CARGO_BIN_EXE_hodograph")).args(["derive", "models/"]), folder);
+    succeeds(Command::new(tool()).args(["derive", "models/"]), folder);
     assert!(folder.join("models/pendulum.derivation").is_file());
     succeeds(&mut commanded("test", folder), folder);
 }

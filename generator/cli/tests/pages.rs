@@ -7,7 +7,7 @@ mod browser;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::hodograph;
+use crate::common::{hodograph, tool};
 
 /// Signs of a formula stand beside each other, numerators over denominators, equations below each other.
 const EQUATIONS: &str = r#"
@@ -121,7 +121,7 @@ fn written_pages_share_their_style_and_drawing() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let model = root.join("models/two_sleds.mech");
     let page = folder.path().join("motion.html");
-    let tool = || Command::new(env!("CARGO_BIN_EXE_hodograph"));
+    let tool = || Command::new(tool());
     let equations = tool().args(["explain", "--format", "html"]).arg(&model).output().unwrap();
     let moved =
         tool().args(["simulate", "--until", "0.1", "--html"]).arg(&page).arg(&model).output().unwrap();

@@ -22,7 +22,7 @@ impl Drop for Served {
 }
 
 fn command(arguments: &[&Path]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hodograph"));
+    let mut command = Command::new(crate::common::tool());
     command.arg("serve").args(arguments).env_remove("HODOGRAPH_PAGE");
     command
 }

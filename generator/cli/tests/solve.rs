@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
-use crate::common::{data, difference, hodograph, kind, number, numbers};
+use crate::common::{data, difference, hodograph, kind, number, numbers, tool};
 use serde_json::{Value, json};
 
 fn case() -> Value {
@@ -135,12 +135,8 @@ fn other_fields_are_left_alone() {
 
 #[test]
 fn each_answer_is_flushed() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
-        .arg("solve")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        Command::new(tool()).arg("solve").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let mut output = BufReader::new(child.stdout.take().unwrap());
     for _ in 0..3 {

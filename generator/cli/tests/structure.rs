@@ -43,7 +43,7 @@ fn symbols_select_closed_forms() {
         let file = folder.join(format!("{name}.mech"));
         fs::write(&file, text).expect("a model");
         let tool = |command: &str| {
-            let output = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+            let output = Command::new(crate::common::tool())
                 .arg(command)
                 .arg(&file)
                 .stdin(Stdio::null())

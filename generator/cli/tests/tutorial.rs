@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::common::root;
+use crate::common::{root, tool};
 use crate::docs::matches;
 use crate::own_crate::{commanded, succeeds};
 
@@ -46,7 +46,8 @@ fn the_tutorial_is_true() {
     let folder = tempfile::tempdir().unwrap();
     let (models, own) = (folder.path(), folder.path().join("balance"));
     let page = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
-    let tool = Path::new(env!("CARGO_BIN_EXE_hodograph")).parent().unwrap();
+    let tool = tool();
+    let tool = tool.parent().unwrap();
     let path = format!("{}:{}", tool.display(), std::env::var("PATH").unwrap_or_default());
     let clone = root().canonicalize().unwrap();
     let mut done = [0; 4];

@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::common::{Run, hodograph, model, root};
+use crate::common::{Run, hodograph, model, root, tool};
 
 const BALL: [&str; 10] = ["--until", "2", "--step", "0.001", "--mu", "0", "--e", "0.5", "--law", "newton"];
 
@@ -41,7 +41,7 @@ fn a_reader_who_leaves_does_not_cut_the_files() {
     };
     let run = simulate(&model, &options(&all).iter().map(String::as_str).collect::<Vec<_>>());
     assert_eq!(run.code, 0, "{}", run.stderr);
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+    let mut child = Command::new(tool())
         .args(["simulate", &model])
         .args(BALL)
         .args(options(&cut))
@@ -203,7 +203,7 @@ fn pictures_of_too_many_steps_are_refused() {
     );
     assert!(endless.told().0 == 2 && endless.stderr.contains("too short"), "{}", endless.stderr);
     // Without a picture the lines go on until the reader leaves.
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+    let mut child = Command::new(tool())
         .args(["simulate", &model])
         .args(surface)
         .stdout(Stdio::piped())

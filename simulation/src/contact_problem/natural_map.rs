@@ -17,7 +17,9 @@ pub fn natural_residual(problem: &Problem<'_>, force: &DVector<f64>) -> f64 {
     let mut worst = 0.0_f64;
     for i in 0..problem.contacts() {
         let block: Matrix3<f64> = problem.w.fixed_view::<3, 3>(3 * i, 3 * i).into();
-        let stiffest = ((block + block.transpose()) * 0.5).symmetric_eigenvalues().max();
+        // by entries: rustc 1.95 optimises the sum of a matrix and its transpose wrongly
+        let symmetric = Matrix3::from_fn(|a, b| 0.5 * (block[(a, b)] + block[(b, a)]));
+        let stiffest = symmetric.symmetric_eigenvalues().max();
         let (r, v, mu) = (three(force, i), three(&velocity, i), problem.mu[i]);
         let rho = if stiffest > 0.0 { 1.0 / stiffest } else { 1.0 };
         let distance = match problem.slip[i] {

@@ -1,6 +1,7 @@
 //! Links whose origins differ from those of their joints.
 
 use super::description::{Joint, Link};
+use super::names::Stated;
 use super::poses::Pose;
 
 /// Collects the links and joints of a description.
@@ -10,6 +11,10 @@ pub struct Chains {
     pub links: Vec<Link>,
     /// the joints
     pub joints: Vec<Joint>,
+    /// the names of links in the file
+    pub names_of_links: Stated,
+    /// the names of joints in the file
+    pub names_of_joints: Stated,
 }
 
 impl Chains {
@@ -34,10 +39,11 @@ impl Chains {
             self.links.push(link);
             return name;
         }
-        let name = format!("{}_frame", link.name);
+        let wish = format!("{}_frame", link.name);
+        let (name, joint) = (self.names_of_links.make_up(&wish), self.names_of_joints.make_up(&wish));
         self.massless(&link.at, &link.name);
         let ends = [link.name.clone(), name.clone()];
-        self.joint(Joint::fixed(link.at.clone(), name.clone(), ends), within);
+        self.joint(Joint::fixed(link.at.clone(), joint, ends), within);
         self.links.push(Link { name: name.clone(), ..link });
         name
     }

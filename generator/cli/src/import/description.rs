@@ -75,7 +75,7 @@ pub struct Joint {
     pub offset: Vector3<f64>,
     /// roll, pitch and yaw of its axes in the parent link, rad
     pub rpy: Vector3<f64>,
-    /// in the joint's axes; x by default
+    /// in the joint's axes
     pub axis: Vector3<f64>,
     /// N m s/rad or N s/m
     pub damping: f64,

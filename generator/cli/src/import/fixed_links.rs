@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::description::{Inertial, Robot};
+use super::symmetric::symmetric;
 use super::tree::{Motion, Tree};
 
 /// The inertia of a body.
@@ -140,16 +141,19 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
         .flat_map(|group| &group.properties)
         .map(|properties| properties.inertia.amax())
         .fold(0.0, f64::max);
-    for group in &mut groups {
-        // Drop rounding errors that an exporter left.
-        if let Some(properties) =
-            group.properties.as_mut().filter(|properties| properties.inertia.amax() <= 1e-12 * largest)
-        {
+    for (group, parts) in groups.iter_mut().zip(&parts) {
+        let link = &tree.links[group.link];
+        if let Some(properties) = group.properties.as_mut().filter(|all| is_rounding(all, parts, largest)) {
+            if parts.iter().any(|part| part.inertia != Matrix3::zeros()) {
+                notes.push(format!(
+                    "{}: the inertia of link `{}` is so small that only rounding can have left it: taken as a particle",
+                    document.links[link.index].at, link.name
+                ));
+            }
             properties.inertia = Matrix3::zeros();
         }
         // Files often have odd numbers for small fixed parts; only the combined body matters.
         if let Some(fault) = group.properties.as_ref().and_then(MassProperties::fault) {
-            let link = &tree.links[group.link];
             let with = if group.fixed.is_empty() { "" } else { " with what is fixed to it" };
             problems.push(format!("{}: link `{}`{with}: {fault}", document.links[link.index].at, link.name));
         }
@@ -202,7 +206,7 @@ fn read_inertial(
         return None;
     }
     let turn = rotation_of(rpy);
-    Some(MassProperties { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
+    Some(MassProperties { mass, centre, inertia: symmetric(&(turn * inertia * turn.transpose())) })
 }
 
 /// The inertia with respect to the axes of the group.
@@ -210,7 +214,7 @@ fn in_axes_of_group(part: &MassProperties, (axes, origin): &(Matrix3<f64>, Vecto
     MassProperties {
         mass: part.mass,
         centre: origin + axes * part.centre,
-        inertia: symmetric(axes * part.inertia * axes.transpose()),
+        inertia: symmetric(&(axes * part.inertia * axes.transpose())),
     }
 }
 
@@ -227,18 +231,22 @@ fn combined_parts(parts: &[MassProperties]) -> Option<MassProperties> {
         return parts.first().cloned();
     }
     let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector3<f64>>() / mass;
-    let inertia = parts
+    let inertia: Matrix3<f64> = parts
         .iter()
         .map(|part| {
             let arm = part.centre - centre;
             part.inertia + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * part.mass
         })
         .sum();
-    Some(MassProperties { mass, centre, inertia: symmetric(inertia) })
+    Some(MassProperties { mass, centre, inertia: symmetric(&inertia) })
 }
 
-fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {
-    (matrix + matrix.transpose()) * 0.5
+/// Whether an inertia is what rounding leaves of none: next to nothing beside the mass at its distance from the
+/// origin, or impossible and next to nothing beside the largest inertia of the robot.
+fn is_rounding(whole: &MassProperties, parts: &[MassProperties], largest: f64) -> bool {
+    let size = whole.inertia.amax();
+    let at_distance: f64 = parts.iter().map(|part| part.mass.abs() * part.centre.norm_squared()).sum();
+    size > 0.0 && (size <= 1e-15 * at_distance || (size <= 1e-12 * largest && whole.fault().is_some()))
 }
 
 /// Two unit vectors perpendicular to a third, right-handed: for x they are y and z, and so on cyclically.

@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::collision::Solid;
 use super::description::Inertial;
 use super::poses::Pose;
+use super::symmetric::symmetric;
 
 /// Volume of a solid, and its moments of inertia for a mass of 1; `None` for a plane.
 pub fn of_solid(solid: Solid) -> Option<(f64, Vector3<f64>)> {
@@ -49,5 +50,5 @@ pub fn combined(parts: &[(f64, Vector3<f64>, Pose)]) -> Option<Inertial> {
     // products of inertia that are only rounding errors of rotations are zero
     let least = 1e-15 * inertia.amax();
     let inertia = inertia.map(|part| if part.abs() < least { 0.0 } else { part });
-    Some(Inertial { mass, centre, rpy: Vector3::zeros(), inertia: (inertia + inertia.transpose()) * 0.5 })
+    Some(Inertial { mass, centre, rpy: Vector3::zeros(), inertia: symmetric(&inertia) })
 }

@@ -24,6 +24,7 @@ mod mjcf;
 mod names;
 mod poses;
 mod sdf;
+mod symmetric;
 mod text;
 mod tree;
 mod xml;

@@ -30,20 +30,49 @@ impl Names {
     /// A free name as similar to `wish` as possible. Names that differ only by case and underscores count as
     /// equal, because they could become equal in generated code.
     pub fn give(&mut self, wish: &str) -> String {
-        let first = identifier(wish);
-        let mut name = first.clone();
-        let mut count = 1;
-        while self.taken.contains(&name) || self.folded.contains(&folded(&name)) {
-            count += 1;
-            name = format!("{first}_n{count}");
-        }
-        if name != first {
-            self.renamed.push(format!("`{first}` is called `{name}`, because that name is taken"));
-        }
-        self.taken.insert(name.clone());
-        self.folded.insert(folded(&name));
+        let [name] = self.give_together([wish]);
         name
     }
+
+    /// Free names that end alike, for what belongs together by its names: the speed `u_hip_n2` is that of the
+    /// coordinate `q_hip_n2`.
+    pub fn give_together<const N: usize>(&mut self, wishes: [&str; N]) -> [String; N] {
+        let first = wishes.map(identifier);
+        let mut names = first.clone();
+        let mut count = 1;
+        while names.iter().any(|name| self.taken.contains(name) || self.folded.contains(&folded(name))) {
+            count += 1;
+            names = first.clone().map(|first| numbered(&first, count));
+        }
+        for (first, name) in first.iter().zip(&names).filter(|(first, name)| first != name) {
+            self.renamed.push(format!("`{first}` is called `{name}`, because that name is taken"));
+        }
+        self.taken.extend(names.clone());
+        self.folded.extend(names.iter().map(|name| folded(name)));
+        names
+    }
+}
+
+/// The names that a file states, of which those that the import makes up keep clear.
+#[derive(Default)]
+pub struct Stated(HashSet<String>);
+
+impl Stated {
+    /// Adds a name of the file.
+    pub fn add(&mut self, name: &str) {
+        self.0.insert(folded(&identifier(name)));
+    }
+
+    /// A name as similar to `wish` as possible that is neither stated nor made up already.
+    pub fn make_up(&mut self, wish: &str) -> String {
+        let all = std::iter::once(wish.to_owned()).chain((2..).map(|count| numbered(wish, count)));
+        let free = all.into_iter().find(|name| self.0.insert(folded(&identifier(name))));
+        free.unwrap_or_else(|| wish.to_owned())
+    }
+}
+
+fn numbered(name: &str, count: usize) -> String {
+    format!("{name}_n{count}")
 }
 
 /// `text` with `_` for every character that an identifier cannot have.
@@ -88,6 +117,14 @@ mod tests {
         assert_eq!(names.give("7up"), "_7up");
         assert_eq!(names.give("N"), "N_n2");
         assert_eq!(names.give("Étage"), "_tage");
+        assert_eq!(names.give("u_arm"), "u_arm");
+        assert_eq!(names.give_together(["q_arm", "u_arm"]), ["q_arm_n2", "u_arm_n2"]);
+        let mut stated = Stated::default();
+        stated.add("hip-frame");
+        assert_eq!(
+            ["hip_frame", "hip_frame", "leg"].map(|wish| stated.make_up(wish)),
+            ["hip_frame_n2", "hip_frame_n3", "leg"]
+        );
         assert_eq!(mechanism("anymal_c v2"), "AnymalCV2");
         assert_eq!(mechanism("3d"), "Robot3d");
     }

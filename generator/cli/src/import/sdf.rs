@@ -29,7 +29,7 @@ pub fn read(
         Reader { file, lines, frames: HashMap::new(), ignored: Ignored::default(), problems: Vec::new() };
     let world = root.children().find(|node| node.tag_name().name() == "world");
     let mut models = Vec::new();
-    let mut gravity = Gravity::Standard;
+    let mut gravity = Gravity::Stated(Vector3::new(0.0, 0.0, GRAVITY));
     for node in world.unwrap_or(root).children().filter(Node::is_element) {
         match node.tag_name().name() {
             "model" => models.push(node),
@@ -51,7 +51,7 @@ pub fn read(
     }
     notes.extend(reader.ignored.notes());
     let name = model.attribute("name").unwrap_or("robot").to_owned();
-    let Chains { links, joints } = chains;
+    let Chains { links, joints, .. } = chains;
     Ok(Robot { file: file.to_owned(), format: "SDF", name, gravity, on_ground: true, links, joints })
 }
 
@@ -68,6 +68,9 @@ struct Reader<'a> {
     ignored: Ignored,
     problems: Vec<String>,
 }
+
+/// The gravity of a world that states none along z, m/s^2: the default of the format.
+const GRAVITY: f64 = -9.8;
 
 /// The axes of the model itself.
 const MODEL: &str = "__model__";
@@ -158,9 +161,16 @@ impl Reader<'_> {
                 Pose::identity()
             }
         };
-        let still = child(model, "static")
-            .is_some_and(|node| matches!(node.text().map(str::trim), Some("true" | "1")));
+        let fixed = |node: &Node| matches!(node.text().map(str::trim), Some("true" | "1"));
+        if let Some(node) = child(model, "static").filter(fixed) {
+            let problem = "nothing moves: all of a static model is fixed: remove <static> if its joints move";
+            self.problems.push(format!("{}: {problem}", self.at(node)));
+        }
         let named = |name: &'static str| model.children().filter(move |node| node.tag_name().name() == name);
+        let names = |kind: &'static str| named(kind).filter_map(|node| node.attribute("name"));
+        chains.names_of_links.add(&world);
+        names("link").for_each(|name| chains.names_of_links.add(name));
+        names("joint").for_each(|name| chains.names_of_joints.add(name));
         for node in model.children().filter(Node::is_element) {
             let kind = node.tag_name().name();
             match kind {
@@ -177,7 +187,7 @@ impl Reader<'_> {
         for link in named("link") {
             let name = link.attribute("name").unwrap_or_default().to_owned();
             let carried = named("joint").find(|joint| ends(*joint)[1] == name);
-            let axes = self.link(link, carried, place, still, &mut chains);
+            let axes = self.link(link, carried, place, &mut chains);
             axes_of.extend(axes.map(|axes| (name, axes)));
         }
         for joint in named("joint") {
@@ -223,7 +233,6 @@ impl Reader<'_> {
         node: Node,
         carried: Option<Node>,
         model: Pose,
-        still: bool,
         chains: &mut Chains,
     ) -> Option<String> {
         let (at, name) = (self.at(node), node.attribute("name")?.to_owned());
@@ -256,17 +265,11 @@ impl Reader<'_> {
         let within = match joint {
             Some(joint) => joint.inverse().then(&pose),
             None => {
-                let ends = ["world".to_owned(), name.clone()];
-                let joint = Joint::fixed(at, format!("{name}_base"), ends);
                 let place = model.then(&pose);
-                match still {
-                    true => chains.joint(joint, &place),
-                    false => {
-                        let start = place.at.iter().copied().chain(place.quaternion()).collect();
-                        let free = Joint { kind: "floating".to_owned(), start, name, ..joint };
-                        chains.joint(free, &Pose::identity());
-                    }
-                }
+                let start = place.at.iter().copied().chain(place.quaternion()).collect();
+                let joint =
+                    Joint::fixed(at, chains.names_of_joints.make_up(&name), ["world".to_owned(), name]);
+                chains.joint(Joint { kind: "floating".to_owned(), start, ..joint }, &Pose::identity());
                 Pose::identity()
             }
         };
@@ -367,7 +370,9 @@ impl Reader<'_> {
             "world" => model.inverse(),
             parent => self.absolute(parent, &at)?,
         };
-        let mut joint = Joint { kind: kind.to_owned(), ..Joint::fixed(at.clone(), name, ends) };
+        // SDF's axis is z, where none is stated
+        let joint = Joint::fixed(at.clone(), name, ends);
+        let mut joint = Joint { kind: kind.to_owned(), axis: Vector3::z(), ..joint };
         if let Some(axis) = child(node, "axis") {
             for part in axis.children().filter(Node::is_element) {
                 if !["xyz", "dynamics"].contains(&part.tag_name().name()) {

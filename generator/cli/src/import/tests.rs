@@ -314,3 +314,83 @@ fn shapes_belong_to_their_links_in_any_order() {
     let (model, _) = model(&body, &Options::default());
     has(&model, "hand_shape { of: hand, at: O, sphere: r_hand_shape },");
 }
+
+/// The model as `hodograph check` sees it.
+fn accepted(model: &str) {
+    let source = hodograph_generator::source::Source::file("two.mech", model);
+    let checked = hodograph_generator::check::check(&source);
+    let said = hodograph_generator::rendering::render(&checked.diagnostics, &source);
+    assert!(checked.mechanism.is_some() && !checked.has_errors(), "{said}\n{model}");
+}
+
+/// The names of coordinates and speeds are documented: that of the mechanism gives way, and a speed is numbered
+/// like its coordinate.
+#[test]
+fn coordinates_and_their_speeds_keep_their_names() {
+    let one = "<link name=\"base\"/>".to_owned() + link("leg");
+    let body = one.clone() + joint("hip", "revolute", "base", "leg", "");
+    let named = robot(&body).replace("\"two\"", "\"q hip\"");
+    let imported = import(&named, "r.urdf", &Options::default()).unwrap();
+    accepted(&imported.model);
+    has(&imported.model, "q_hip: rad,");
+    has(&imported.model, "mechanism QHip_n2;");
+    assert!(imported.notes.join("\n").contains("`QHip` is called `QHip_n2`"), "{:?}", imported.notes);
+    // a quaternion of one joint and the coordinate of another
+    let body = one
+        + link("foot")
+        + joint("hip", "floating", "base", "leg", "")
+        + joint("hip_e0", "revolute", "leg", "foot", "");
+    let (model, _) = model(&body, &Options::default());
+    accepted(&model);
+    has(&model, "q_hip_e0_n2: rad,");
+    has(&model, "u_hip_e0_n2: rad/s,");
+}
+
+/// Line breaks in names do not break the comments of the model.
+#[test]
+fn names_of_several_lines_stand_in_comments_of_one() {
+    let body = "<link name=\"base\"/>".to_owned()
+        + link("ha&#10;nd")
+        + link("tip&#13;")
+        + joint(
+            "ya&#10;w",
+            "prismatic",
+            "base",
+            "ha&#10;nd",
+            "<axis xyz=\"0 0 1\"/><dynamics damping=\"1\"/>",
+        )
+        + joint("w", "fixed", "ha&#10;nd", "tip&#13;", "");
+    let options = Options { contacts: vec!["ha\nnd".into()], ..Options::default() };
+    let (model, _) = model(&body, &options);
+    accepted(&model);
+    has(&model, "/// mass of link `ha nd` with `tip `");
+    has(&model, "/// damping of joint `ya w`");
+    has(&model, "/// the origin of link `ha nd` strikes the plane through O across N.z");
+}
+
+/// An inertia counts beside any other of the robot; what only rounding can have left is told.
+#[test]
+fn small_inertias_count_beside_large_ones() {
+    let inertia = |name: &str, mass: &str, at: &str, moments: [&str; 3]| {
+        let [xx, yy, zz] = moments;
+        format!(
+            "<link name=\"{name}\"><inertial><origin xyz=\"{at}\"/><mass value=\"{mass}\"/><inertia ixx=\"{xx}\" \
+             ixy=\"0\" ixz=\"0\" iyy=\"{yy}\" iyz=\"0\" izz=\"{zz}\"/></inertial></link>\n"
+        )
+    };
+    let ship = |arm: String| {
+        "<link name=\"base\"/>".to_owned()
+            + inertia("hull", "1e7", "0 0 0", ["1e10"; 3]).as_str()
+            + arm.as_str()
+            + joint("yaw", "revolute", "base", "hull", "<axis xyz=\"0 0 1\"/>")
+            + joint("spin", "revolute", "hull", "arm", "")
+    };
+    let (kept, notes) = model(&ship(inertia("arm", "0.5", "0 0 0", ["5e-3"; 3])), &Options::default());
+    has(&kept, "Ixx_arm: kg*m^2 = 0.005,");
+    assert!(!kept.contains("particles") && !notes.contains("rounding"), "{notes}\n{kept}");
+    for (at, moments) in [("0 0 1", ["1e-17"; 3]), ("0 0 0", ["1e-17", "0", "0"])] {
+        let (model, notes) = model(&ship(inertia("arm", "0.5", at, moments)), &Options::default());
+        assert!(model.contains("particles"), "{model}");
+        assert!(notes.contains("the inertia of link `arm` is so small that only rounding"), "{notes}");
+    }
+}

@@ -144,6 +144,126 @@ fn elements_of_mjcf_without_counterpart_are_reported() {
     assert!(said.contains("--base is for URDF only: MJCF states itself"), "{said}");
 }
 
+/// `<flag>` switches forces off; a flag without a counterpart in a model is reported.
+#[test]
+fn flags_of_mjcf_switch_forces_off() {
+    let arm = ARM.replace("<joint ", "<joint damping=\"2\" stiffness=\"3\" frictionloss=\"1\" ");
+    let more = "<actuator><position name=\"m\" joint=\"hip\"/></actuator>";
+    let loop_of = "<equality><connect name=\"loop\" body1=\"arm\" anchor=\"0 0 0\"/></equality>";
+    let with = |flags: &str, more: &str| mjcf(&arm, &format!("<option><flag {flags}/></option>{more}"));
+    let of = |flags: &str| imported(&with(flags, more), "m.xml");
+    let (all, notes) = of("gravity=\"enable\" contact=\"disable\"");
+    accepted(&all);
+    has(&all, "torque on arm_axes: (ctrl_m + kq_m*q_hip - d_hip*u_hip - s_hip*q_hip)*arm_axes.y;");
+    assert!(notes.contains("m.xml:5:9: ignored attribute `contact` of <flag>"), "{notes}");
+    let (none, _) = of("gravity=\"disable\"");
+    accepted(&none);
+    assert!(!none.contains("gravity") && none.contains("d_hip"), "{none}");
+    for (flags, gone, kept) in [
+        ("damper=\"disable\"", "d_hip", "s_hip"),
+        ("spring=\"disable\"", "s_hip", "d_hip"),
+        ("actuation=\"disable\"", "ctrl_m", "d_hip"),
+    ] {
+        let (model, _) = of(flags);
+        accepted(&model);
+        assert!(!model.contains(gone) && model.contains(kept), "{flags}\n{model}");
+    }
+    let (passive, notes) = of("passive=\"disable\" constraint=\"disable\"");
+    assert!(!passive.contains("d_hip") && !passive.contains("s_hip"), "{passive}");
+    assert!(!notes.contains("friction"), "{notes}");
+    let (_, notes) = of("actuation=\"disable\"");
+    assert!(notes.contains("ignored <actuator>, which is switched off"), "{notes}");
+    let (_, notes) = imported(&with("equality=\"disable\"", loop_of), "m.xml");
+    assert!(notes.contains("ignored <equality>, which is switched off"), "{notes}");
+    assert!(refused(&with("gravity=\"off\"", more), "m.xml").contains("`gravity` is `enable` or `disable`"));
+    let other = mjcf(ARM, "<option><flog/></option>");
+    assert!(refused(&other, "m.xml").contains("<flog> cannot be imported"));
+}
+
+/// Each `<compiler>` changes what it states and nothing else.
+#[test]
+fn compilers_of_mjcf_add_up() {
+    let stated = "<inertial pos=\"0 0 0\" mass=\"50\" diaginertia=\"9 9 9\"/><geom";
+    let arm = ARM.replace("<geom", stated).replace("<joint", "<joint springref=\"180\" stiffness=\"1\"");
+    let of = |compilers: &str| mjcf(&arm, compilers);
+    let (model, _) =
+        imported(&of("<compiler inertiafromgeom=\"true\"/><compiler angle=\"radian\"/>"), "m.xml");
+    has(&model, "m_arm: kg = 10,");
+    has(&model, "q0_hip: rad = 180,");
+    let second = "<compiler inertiafromgeom=\"true\" angle=\"radian\"/><compiler inertiafromgeom=\"auto\" angle=\"degree\"/>";
+    let (model, _) = imported(&of(second), "m.xml");
+    has(&model, "m_arm: kg = 50,");
+    has(&model, "q0_hip: rad = 3.141592653589793,");
+    let said = refused(&of("<compiler inertiafromgeom=\"yes\"/>"), "m.xml");
+    assert!(said.contains("`inertiafromgeom` is `true`, `false` or `auto`"), "{said}");
+}
+
+/// Defaults of one kind of actuator are those of all: each sets attributes of `general`.
+#[test]
+fn actuators_of_mjcf_share_their_defaults() {
+    let of = |defaults: &str, actuator: &str| {
+        let more = format!("<default>{defaults}</default><actuator>{actuator}</actuator>");
+        imported(&mjcf(ARM, &more), "m.xml")
+    };
+    let motor = "<motor name=\"m\" joint=\"hip\"/>";
+    let (model, notes) = of("<general gear=\"50\" ctrlrange=\"-1 1\"/>", motor);
+    accepted(&model);
+    has(&model, "gear_m: 1 = 50,");
+    assert!(notes.contains("ignored attribute `ctrlrange` of <motor>"), "{notes}");
+    // the last one holds, whatever its kind
+    let (model, _) = of(
+        "<motor gear=\"2\"/><default class=\"c\"><position gear=\"3\"/></default>",
+        &motor.replace("name", "class=\"c\" name"),
+    );
+    has(&model, "gear_m: 1 = 3,");
+    // a motor has a gain of one and no stiffness
+    let (model, notes) = of("<position kp=\"7\" kv=\"2\"/>", motor);
+    has(&model, "torque on arm_axes: ctrl_m*arm_axes.y;");
+    assert!(notes.lines().count() == 0, "{notes}");
+    // the gain of a servo is that of the defaults
+    let position = "<position name=\"m\" joint=\"hip\"/>";
+    let (model, notes) = of("<general gainprm=\"7\"/>", position);
+    has(&model, "gain_m: N*m = 7,");
+    has(&model, "kq_m: N*m/rad = -7,");
+    assert!(notes.is_empty(), "{notes}");
+    let (model, _) = of("<position kp=\"7\" kv=\"2\"/>", "<general name=\"m\" joint=\"hip\"/>");
+    has(&model, "ku_m: N*m*s/rad = -2,");
+    let (model, _) =
+        of("<position kp=\"7\" dampratio=\"1\"/><adhesion ctrlrange=\"0 1\" gain=\"3\"/>", motor);
+    has(&model, "torque on arm_axes: ctrl_m*arm_axes.y;");
+    let muscle = mjcf(ARM, &format!("<default><muscle/></default><actuator>{position}</actuator>"));
+    assert!(refused(&muscle, "m.xml").contains("only `dyntype` none"));
+}
+
+/// Names that the import makes up keep clear of those of the file.
+#[test]
+fn made_up_names_of_mjcf_are_new() {
+    let body = |name: &str, joints: &str, inner: &str| {
+        format!(
+            "<body {name} pos=\"0 0 1\">{joints}<geom type=\"box\" size=\"0.5 0.5 0.5\"/>{inner}</body>\n"
+        )
+    };
+    let one = "<joint axis=\"0 1 0\"/>";
+    let hip = "<joint name=\"hip\" axis=\"0 1 0\"/>";
+    let (model, _) = imported(&mjcf(&body("name=\"hip\"", one, &body("name=\"leg\"", hip, "")), ""), "m.xml");
+    accepted(&model);
+    has(&model, "leg_axes = hip_axes.rotate(y, q_hip);");
+    has(&model, "hip_axes = N.rotate(y, q_hip_n2);");
+    // a link between two joints, frames, fixed and unnamed bodies
+    let two = "<joint name=\"b\" axis=\"0 1 0\"/><joint name=\"c\" pos=\"0.1 0 0\" axis=\"1 0 0\"/>";
+    let named = |name: &str| format!("<joint name=\"{name}\"/>");
+    let world = [
+        body("name=\"a\"", two, &body("name=\"a_b\"", &named("a_weld"), "")),
+        body("", &named("body_1"), &body("name=\"body_1\"", &named("a_frame"), "")),
+        body("name=\"a_frame\"", one, &body("name=\"d\"", "", &body("name=\"e\"", &named("d_weld"), ""))),
+    ];
+    let (model, _) = imported(&mjcf(&world.concat(), ""), "m.xml");
+    accepted(&model);
+    for name in ["b", "c", "a_weld", "body_1", "a_frame", "d_weld"] {
+        has(&model, &format!("q_{name}: rad,"));
+    }
+}
+
 /// A link with its mass centre half a metre above its origin.
 fn link(name: &str, pose: &str, more: &str) -> String {
     format!(
@@ -202,6 +322,38 @@ fn models_of_sdf_have_links_in_axes_of_their_choice() {
     let (model, _) = imported(&sdf(&link("ball", "<pose>0 0 3 0 0 0</pose>", "")), "m.sdf");
     accepted(&model);
     has(&model, "q_ball_z: m = 3,");
+}
+
+/// What SDF leaves out has the format's own values: an axis along z, and a gravity of 9.8 m/s^2.
+#[test]
+fn models_of_sdf_have_the_defaults_of_the_format() {
+    let body = [link("arm", "", ""), joint("hip", "revolute", "world", "arm", "")].concat();
+    let (model, _) = imported(&sdf(&body), "m.sdf");
+    accepted(&model);
+    has(&model, "arm_axes = N.rotate(z, q_hip);");
+    has(&model, "g: m/s^2 = 9.8,");
+    let world = |gravity: &str| {
+        sdf(&body)
+            .replace("<model", &format!("<world name=\"w\">{gravity}<model"))
+            .replace("</model>", "</model></world>")
+    };
+    has(&imported(&world(""), "m.sdf").0, "g: m/s^2 = 9.8,");
+    has(&imported(&world("<gravity>0 0 -2</gravity>"), "m.sdf").0, "g: m/s^2 = 2,");
+}
+
+/// All of a static model is fixed, also what its joints would move.
+#[test]
+fn static_models_of_sdf_do_not_move() {
+    let body = [
+        "<static>true</static>",
+        &link("a", "", ""),
+        &link("b", "", ""),
+        &joint("j", "revolute", "a", "b", ""),
+    ]
+    .concat();
+    let said = refused(&sdf(&body), "m.sdf");
+    assert!(said.contains("m.sdf:2:1: nothing moves: all of a static model is fixed"), "{said}");
+    imported(&sdf(&body.replace("true", "false")), "m.sdf");
 }
 
 #[test]

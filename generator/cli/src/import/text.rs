@@ -70,7 +70,6 @@ pub fn write(
         called: Vec::new(),
         bodies: vec![None; groups.groups.len()],
     };
-    let name = writer.names.give(&mechanism(&document.name));
     writer.gravity(&document.gravity);
     // Coordinates, speeds and inputs first: their names are documented, so that others must give way.
     let mut motions: Vec<JointNames> = tree.links.iter().map(|link| writer.declare(&link.joint)).collect();
@@ -101,6 +100,8 @@ pub fn write(
     if !problems.is_empty() {
         return Err(problems);
     }
+    // the name of the mechanism gives way to those of its parts, which are documented
+    let name = writer.names.give(&mechanism(&document.name));
     notes.append(&mut writer.names.renamed);
     Ok(writer.finish(&name, document))
 }
@@ -116,6 +117,16 @@ pub struct JointNames {
     pub inputs: Vec<String>,
 }
 
+/// What stands above an entry. Names of links and joints may have any characters, and a comment has one line.
+fn comment(text: &str) -> String {
+    format!("/// {}", one_line(text))
+}
+
+/// A text with blanks for control characters, as line breaks.
+fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
 /// Suffixes of rotations about three axes.
 const TURNS: [&str; 3] = ["_rx", "_ry", "_rz"];
 
@@ -126,7 +137,7 @@ const SLIDE: [&str; 3] = ["m", "m/s", "N"];
 impl Writer<'_> {
     pub(super) fn parameter(&mut self, name: &str, unit: &str, value: f64, docs: &str) -> String {
         let name = self.names.give(name);
-        let docs = if docs.is_empty() { String::new() } else { format!("/// {docs}\n    ") };
+        let docs = if docs.is_empty() { String::new() } else { format!("{}\n    ", comment(docs)) };
         self.out.parameters.push(format!("{docs}{}{name}: {unit} = {},", self.fixed, decimal(value)));
         name
     }
@@ -199,14 +210,17 @@ impl Writer<'_> {
             value => format!(" = {}", decimal(value)),
         };
         for (suffix, [position, speed, force]) in list {
-            if !turns_freely || position == "m" {
-                let name = self.names.give(&format!("q_{base}{suffix}"));
+            let own = format!("u_{base}{suffix}");
+            let own = if !turns_freely || position == "m" {
+                let [name, own] = self.names.give_together([&format!("q_{base}{suffix}"), &own]);
                 self.out.coordinates.push(format!("{name}: {position}{},", value(0.0)));
                 moves.coordinates.push(name);
-            }
-            let name = self.names.give(&format!("u_{base}{suffix}"));
-            self.out.speeds.push(format!("{name}: {speed},"));
-            moves.speeds.push(name);
+                own
+            } else {
+                self.names.give(&own)
+            };
+            self.out.speeds.push(format!("{own}: {speed},"));
+            moves.speeds.push(own);
             if joint.actuators.is_none() {
                 moves.inputs.push(self.input(&format!("tau_{base}{suffix}"), force));
             }
@@ -392,6 +406,7 @@ impl Writer<'_> {
                 group.fixed.iter().map(|&other| format!("`{}`", self.tree.links[other].name)).collect();
             docs = format!("{docs} with {}", fixed.join(", "));
         }
+        let above = comment(&docs);
         let mass =
             self.parameter(&format!("m_{}", link.name), "kg", properties.mass, &format!("mass of {docs}"));
         let centre = match self.offset(["cx", "cy", "cz"], &link.name, &properties.centre, &axes) {
@@ -401,7 +416,7 @@ impl Writer<'_> {
         self.bodies[index] = Some(name.clone());
         let i = &properties.inertia;
         if i.iter().all(|&number| number == 0.0) {
-            self.out.particles.push(format!("/// {docs}\n    {name} {{ point: {centre}, mass: {mass} }},"));
+            self.out.particles.push(format!("{above}\n    {name} {{ point: {centre}, mass: {mass} }},"));
             return;
         }
         let entries =
@@ -415,7 +430,7 @@ impl Writer<'_> {
             })
             .collect();
         self.out.bodies.push(format!(
-            "/// {docs}\n    {name} {{ frame: {axes}, centre: {centre}, mass: {mass}, inertia: [{}] }},",
+            "{above}\n    {name} {{ frame: {axes}, centre: {centre}, mass: {mass}, inertia: [{}] }},",
             entries.join(", ")
         ));
     }
@@ -489,8 +504,9 @@ impl Writer<'_> {
             _ => String::new(),
         };
         let name = self.names.give(&format!("contact_{wanted}"));
+        let above = comment(&format!("the origin of link `{wanted}` strikes the plane through O across N.z"));
         self.out.contacts.push(format!(
-            "/// the origin of link `{wanted}` strikes the plane through O across N.z\n    {name} {{ point: {origin}{of}, \
+            "{above}\n    {name} {{ point: {origin}{of}, \
              normal: N.z, gap: dot(position({origin}), N.z) }},"
         ));
     }
@@ -524,8 +540,8 @@ impl Writer<'_> {
         let out = self.out;
         let mut text = format!(
             "//! {}, imported from {}.\n//!\n//! Axes, origins and inertias of links and joints are those of the {}.\n",
-            document.name.replace(['\n', '\r'], " "),
-            document.file.replace(['\n', '\r'], " "),
+            one_line(&document.name),
+            one_line(&document.file),
             document.format
         );
         text.push_str(&format!("mechanism {name};\n"));

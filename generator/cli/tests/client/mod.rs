@@ -21,7 +21,7 @@ pub const URI: &str = "file:///nowhere/model.mech";
 impl Client {
     /// A server that has heard nothing yet.
     pub fn new() -> Client {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+        let mut child = Command::new(crate::common::tool())
             .args(["lsp", "--stdio"])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

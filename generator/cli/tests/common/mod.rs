@@ -49,9 +49,15 @@ pub fn kind(line: &Value) -> String {
     line["error"]["kind"].as_str().unwrap().to_owned()
 }
 
+/// The tool that the tests run: the one that `HODOGRAPH_TOOL` names, else the one that cargo has built for them.
+pub fn tool() -> PathBuf {
+    std::env::var_os("HODOGRAPH_TOOL")
+        .map_or_else(|| PathBuf::from(env!("CARGO_BIN_EXE_hodograph")), PathBuf::from)
+}
+
 /// Runs the tool.
 pub fn hodograph(arguments: &[&str], stdin: &str) -> Run {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+    let mut child = Command::new(tool())
         .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

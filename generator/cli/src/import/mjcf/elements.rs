@@ -11,9 +11,41 @@ use crate::import::poses::{self, Pose};
 /// The values of attributes.
 type Values = BTreeMap<String, String>;
 
-/// The default values of each class, by the names of elements.
+/// The default values of each class.
 #[derive(Default)]
-pub struct Defaults(BTreeMap<String, BTreeMap<String, Values>>);
+pub struct Defaults(BTreeMap<String, Class>);
+
+/// The default values of a class.
+#[derive(Clone, Default)]
+struct Class {
+    /// by the names of elements
+    values: BTreeMap<String, Values>,
+    /// the defaults of actuators in their order, each with its name: all of them set what the one kind `general`
+    /// has
+    actuators: Vec<(String, Values)>,
+}
+
+/// The kinds of actuators.
+const ACTUATORS: [&str; 9] =
+    ["general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion"];
+
+/// The attributes that actuators of all kinds have, and share their defaults of.
+const OF_ALL_ACTUATORS: [&str; 14] = [
+    "group",
+    "ctrllimited",
+    "forcelimited",
+    "actlimited",
+    "ctrlrange",
+    "forcerange",
+    "actrange",
+    "lengthrange",
+    "gear",
+    "cranklength",
+    "user",
+    "actdim",
+    "actearly",
+    "delay",
+];
 
 impl Defaults {
     /// Reads a `<default>` and those inside it, which inherit its values.
@@ -22,9 +54,15 @@ impl Defaults {
         let mut all = self.0.get(outer.unwrap_or(&class)).cloned().unwrap_or_default();
         for element in node.children().filter(Node::is_element) {
             let name = element.tag_name().name();
-            if name != "default" {
-                let values = element.attributes().map(|a| (a.name().to_owned(), a.value().to_owned()));
-                all.entry(name.to_owned()).or_default().extend(values);
+            if ACTUATORS.contains(&name) {
+                all.actuators.push((name.to_owned(), stated(element)));
+                let (shared, own): (Values, Values) = stated(element)
+                    .into_iter()
+                    .partition(|(name, _)| OF_ALL_ACTUATORS.contains(&name.as_str()));
+                ACTUATORS.iter().for_each(|kind| all.add(kind, shared.clone()));
+                all.add(name, own);
+            } else if name != "default" {
+                all.add(name, stated(element));
             }
         }
         self.0.insert(class.clone(), all);
@@ -45,11 +83,29 @@ impl Defaults {
         if given.is_none() && class != "main" {
             return Err(format!("{at}: there is no <default class=\"{class}\">"));
         }
-        let mut values = given.and_then(|given| given.get(name)).cloned().unwrap_or_default();
-        values.extend(node.attributes().map(|a| (a.name().to_owned(), a.value().to_owned())));
-        let known = RefCell::new(BTreeSet::from(["class".to_owned(), "name".to_owned()]));
-        Ok(Element { at, kind: name.to_owned(), values, known })
+        let mut values = given.and_then(|given| given.values.get(name)).cloned().unwrap_or_default();
+        values.extend(stated(node));
+        Ok(Element::of(at, name, values))
     }
+
+    /// The defaults of actuators of a class in their order, and last the actuator with its own attributes alone.
+    pub fn of_actuator(&self, node: Node, at: &str) -> Vec<Element> {
+        let class = self.0.get(node.attribute("class").unwrap_or("main"));
+        let defaults = class.iter().flat_map(|class| class.actuators.iter().cloned());
+        let own = (node.tag_name().name().to_owned(), stated(node));
+        defaults.chain([own]).map(|(kind, values)| Element::of(at.to_owned(), &kind, values)).collect()
+    }
+}
+
+impl Class {
+    fn add(&mut self, kind: &str, values: Values) {
+        self.values.entry(kind.to_owned()).or_default().extend(values);
+    }
+}
+
+/// The attributes of an element.
+fn stated(node: Node) -> Values {
+    node.attributes().map(|a| (a.name().to_owned(), a.value().to_owned())).collect()
 }
 
 /// An element.
@@ -64,6 +120,18 @@ pub struct Element {
 }
 
 impl Element {
+    fn of(at: String, kind: &str, values: Values) -> Self {
+        let known = RefCell::new(BTreeSet::from(["class".to_owned(), "name".to_owned()]));
+        Element { at, kind: kind.to_owned(), values, known }
+    }
+
+    /// Takes the attributes that another one of this kind has read as read.
+    pub fn read_like(&self, other: &Element) {
+        if self.kind == other.kind {
+            self.known.borrow_mut().extend(other.known.borrow().iter().cloned());
+        }
+    }
+
     /// The value of an attribute.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.known.borrow_mut().insert(name.to_owned());

@@ -3,11 +3,13 @@
 mod actuators;
 mod elements;
 mod geoms;
+mod option;
 
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::Node;
 
 use self::elements::{Angles, Defaults, Element};
+use self::option::Forces;
 use super::chains::Chains;
 use super::description::{Gravity, Inertial, Joint, Link, Robot};
 use super::lines::Lines;
@@ -59,7 +61,7 @@ pub fn read(
         defaults: Defaults::default(),
         angles: Angles { degrees: true, sequence: "xyz".to_owned() },
         from_geoms: FromGeoms::WhereNoneIsStated,
-        gravity: Vector3::new(0.0, 0.0, -9.81),
+        forces: Forces::all(),
         chains: Chains::default(),
         unnamed: 0,
         ignored: Ignored::default(),
@@ -68,7 +70,8 @@ pub fn read(
     let sections = |name: &'static str| root.children().filter(move |node| node.tag_name().name() == name);
     sections("default").for_each(|node| reader.defaults.read(node, None));
     sections("compiler").for_each(|node| reader.attempt(node, Reader::compiler));
-    sections("option").for_each(|node| reader.attempt(node, Reader::option));
+    sections("option").for_each(|node| reader.options(node));
+    reader.names(root);
     let world = reader.at(root);
     let mut link = Link { at: world, name: "world".to_owned(), inertial: None, collisions: Vec::new() };
     for node in sections("worldbody") {
@@ -80,6 +83,10 @@ pub fn read(
         let name = node.tag_name().name();
         match name {
             "default" | "compiler" | "option" | "worldbody" | "actuator" => {}
+            "equality" if !reader.forces.equality() => {
+                let at = reader.at(node);
+                reader.ignored.count("<equality>, which is switched off".to_owned(), || at);
+            }
             "equality" | "tendon" => reader.refuse_parts(node),
             _ => reader.other(node),
         }
@@ -92,7 +99,7 @@ pub fn read(
         file: file.to_owned(),
         format: "MJCF",
         name: root.attribute("model").unwrap_or("robot").to_owned(),
-        gravity: Gravity::Stated(reader.gravity),
+        gravity: Gravity::Stated(reader.forces.gravity()),
         on_ground: true,
         links: reader.chains.links,
         joints: reader.chains.joints,
@@ -105,7 +112,7 @@ struct Reader<'a> {
     defaults: Defaults,
     angles: Angles,
     from_geoms: FromGeoms,
-    gravity: Vector3<f64>,
+    forces: Forces,
     chains: Chains,
     /// number of bodies without a name so far
     unnamed: usize,
@@ -187,7 +194,8 @@ impl Reader<'_> {
 
     fn compiler(&mut self, element: &Element) -> Result<(), String> {
         match element.text("angle") {
-            None | Some("degree") => {}
+            None => {}
+            Some("degree") => self.angles.degrees = true,
             Some("radian") => self.angles.degrees = false,
             Some(_) => return Err(element.wrong("`angle` is `degree` or `radian`")),
         }
@@ -197,11 +205,13 @@ impl Reader<'_> {
             }
             self.angles.sequence = sequence.to_owned();
         }
-        self.from_geoms = match element.text("inertiafromgeom") {
-            Some("true") => FromGeoms::Always,
-            Some("false") => FromGeoms::Never,
-            _ => FromGeoms::WhereNoneIsStated,
-        };
+        match element.text("inertiafromgeom") {
+            None => {}
+            Some("true") => self.from_geoms = FromGeoms::Always,
+            Some("false") => self.from_geoms = FromGeoms::Never,
+            Some("auto") => self.from_geoms = FromGeoms::WhereNoneIsStated,
+            Some(_) => return Err(element.wrong("`inertiafromgeom` is `true`, `false` or `auto`")),
+        }
         for (name, usual) in [
             ("coordinate", "local"),
             ("balanceinertia", "false"),
@@ -224,11 +234,17 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn option(&mut self, element: &Element) -> Result<(), String> {
-        if let Some(gravity) = element.numbers::<3>("gravity")? {
-            self.gravity = Vector3::from(gravity);
+    /// The names of bodies and joints, of which those of others keep clear.
+    fn names(&mut self, root: Node) {
+        self.chains.names_of_links.add("world");
+        let parts = root.children().filter(|node| node.tag_name().name() == "worldbody");
+        for node in parts.flat_map(|node| node.descendants()) {
+            match (node.tag_name().name(), node.attribute("name")) {
+                ("body", Some(name)) => self.chains.names_of_links.add(name),
+                ("joint" | "freejoint", Some(name)) => self.chains.names_of_joints.add(name),
+                _ => {}
+            }
         }
-        Ok(())
     }
 
     fn world(&mut self, node: Node, link: &mut Link) {
@@ -278,8 +294,13 @@ impl Reader<'_> {
             return self.problems.push(format!("{at}: bodies are nested more than {MAX_DEPTH} deep"));
         }
         let class = node.attribute("childclass").unwrap_or(class).to_owned();
-        self.unnamed += usize::from(!node.has_attribute("name"));
-        let name = node.attribute("name").map_or_else(|| format!("body_{}", self.unnamed), str::to_owned);
+        let name = match node.attribute("name") {
+            Some(name) => name.to_owned(),
+            None => {
+                self.unnamed += 1;
+                self.chains.names_of_links.make_up(&format!("body_{}", self.unnamed))
+            }
+        };
         let mut read = None;
         self.attempt(node, |reader, element| {
             let _ = element.text("childclass");
@@ -325,10 +346,13 @@ impl Reader<'_> {
             let last = number + 1 == count;
             let name = match (element.text("name"), count) {
                 (Some(name), _) => name.to_owned(),
-                (None, 1) => body.name.clone(),
-                (None, _) => format!("{}_{}", body.name, number + 1),
+                (None, 1) => self.chains.names_of_joints.make_up(&body.name),
+                (None, _) => self.chains.names_of_joints.make_up(&format!("{}_{}", body.name, number + 1)),
             };
-            let child = if last { body.name.clone() } else { format!("{}_{name}", body.name) };
+            let child = match last {
+                true => body.name.clone(),
+                false => self.chains.names_of_links.make_up(&format!("{}_{name}", body.name)),
+            };
             let ends = [parent.clone(), child.clone()];
             let read = self.joint(element, &body, count, Joint::fixed(element.at.clone(), name, ends));
             let (joint, anchor) = match read {
@@ -353,7 +377,7 @@ impl Reader<'_> {
             pose = within;
         }
         if count == 0 {
-            let name = format!("{}_weld", body.name);
+            let name = self.chains.names_of_joints.make_up(&format!("{}_weld", body.name));
             self.chains.joint(Joint::fixed(at.to_owned(), name, [parent, body.name.clone()]), &pose);
         }
         Some(self.chains.link(link, &within))
@@ -377,13 +401,14 @@ impl Reader<'_> {
             );
         }
         let rests_at = element.number("springref", 0.0)?;
+        let amount = |name: &str| Ok::<f64, String>(self.forces.of_joint(name, element.amount(name, 0.0)?));
         let about_one = |kind: &str, rests_at: f64| -> Result<Joint, String> {
             Ok(Joint {
                 kind: kind.to_owned(),
                 axis,
-                damping: element.amount("damping", 0.0)?,
-                friction: element.amount("frictionloss", 0.0)?,
-                stiffness: element.amount("stiffness", 0.0)?,
+                damping: amount("damping")?,
+                friction: amount("frictionloss")?,
+                stiffness: amount("stiffness")?,
                 spring_rests_at: rests_at,
                 actuators: Some(Vec::new()),
                 ..joint.clone()
