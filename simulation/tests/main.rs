@@ -15,7 +15,7 @@ mod crates;
 mod curvature;
 mod discs;
 mod driven;
-mod driven_rest;
+
 mod edges;
 mod energy_under_poisson;
 mod exact;
@@ -39,6 +39,7 @@ mod poses;
 mod refused;
 mod roads;
 mod rotation;
+mod set_in_motion;
 mod settling;
 mod several;
 mod shipped;

@@ -313,8 +313,8 @@ impl<'a> Motion<'a> {
         Ok(found)
     }
 
-    /// The power of the inputs: the generalised forces that they add, times the speeds. `numbers` is work
-    /// space.
+    /// The power of the inputs: the generalised forces that they add, times the speeds; 0 where there are no forces without
+    /// them, as of an input that divides. `numbers` is work space.
     fn input_power(&self, state: &State<'_>, numbers: &mut Vec<f64>) -> Result<f64, StateError> {
         let (p, w) = (state.speeds.len(), state.inputs.len());
         numbers.clear();
@@ -322,7 +322,9 @@ impl<'a> Motion<'a> {
         let (with, rest) = numbers.split_at_mut(p);
         let (without, none) = rest.split_at_mut(p);
         self.mechanism.forcing(state, with)?;
-        self.mechanism.forcing(&State { inputs: none, ..*state }, without)?;
+        if self.mechanism.forcing(&State { inputs: none, ..*state }, without).is_err() {
+            return Ok(0.0);
+        }
         Ok(with.iter().zip(&*without).zip(state.speeds).map(|((a, b), u)| (a - b) * u).sum())
     }
 }

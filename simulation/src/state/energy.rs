@@ -15,7 +15,7 @@ pub struct EnergyAccount {
     pub friction: f64,
     /// change of kinetic energy in impacts
     pub impacts: f64,
-    /// work of the named inputs
+    /// work of the named inputs; 0 where loads have no value without them
     pub inputs: f64,
 }
 

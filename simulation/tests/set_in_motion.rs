@@ -1,4 +1,4 @@
-//! Mechanisms at rest that loads which depend on time set in motion.
+//! Mechanisms that loads which depend on time or on inputs set in motion.
 
 use hodograph::Law;
 use hodograph_interpreter::NumericMechanism;
@@ -104,4 +104,24 @@ fn what_was_at_rest_tips() {
             assert!(state[2].abs() < 1e-12, "{time}: {state:?}");
         }
     }
+}
+
+/// An input that divides a load has no value of zero; the motion does not need one.
+#[test]
+fn an_input_may_divide() {
+    let mechanism = numeric(
+        "geared-cart",
+        "mechanism Geared;
+        parameters { m: kg = 2, k: N = 3 }
+        inputs { ratio: 1 = 2 }
+        coordinates { x: m }
+        speeds { u: m/s }
+        points { P = O + x*N.x; }
+        particles { Cart { point: P, mass: m } }
+        loads { force on P: k/ratio*N.x; }
+        kinematics { d(x)/dt = u; }",
+    );
+    let start = Start { coordinates: vec![0.0], speeds: vec![0.0], inputs: vec![2.0] };
+    let (states, _) = states(&mechanism, &start, &[1.0]);
+    assert!((states[0][0] - 0.375).abs() < 1e-12, "{states:?}");
 }
