@@ -1,5 +1,6 @@
 //! Expressions of numbers, and of functions of time, in the syntax of the model language.
 
+use std::fmt;
 use std::sync::Arc;
 
 use hodograph_generator::syntax::tree::{Expr, ExprKind};
@@ -21,13 +22,47 @@ enum Node {
     Call2(fn(f64, f64) -> f64, Box<Node>, Box<Node>),
 }
 
+/// What is wrong with an expression, in a sentence.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mistake {
+    /// it is no expression of this kind
+    Unreadable(String),
+    /// it has a name that does not exist
+    UnknownName(String),
+    /// its value is not finite
+    NotFinite(String),
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Unreadable(what) | Self::UnknownName(what) | Self::NotFinite(what)) = self;
+        out.write_str(what)
+    }
+}
+
+/// What an expression is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sort {
+    Number,
+    OfTime,
+}
+
+impl Sort {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::OfTime => "an expression of the time t",
+        }
+    }
+}
+
 /// A function of the time `t`.
 ///
 /// # Errors
 ///
-/// The mistake, in a sentence.
-pub fn of_time(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String> {
-    let node = read(text)?;
+/// The mistake.
+pub fn of_time(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, Mistake> {
+    let node = read(text, Sort::OfTime)?;
     Ok(Arc::new(move |t| value(&node, t)))
 }
 
@@ -35,34 +70,29 @@ pub fn of_time(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, Stri
 ///
 /// # Errors
 ///
-/// The expression cannot be read, or its value is not finite; in a sentence.
-pub fn number(text: &str) -> Result<f64, String> {
-    let not_finite = |number: f64| Err(format!("it is {number}: it must be finite"));
+/// The expression cannot be read, or its value is not finite.
+pub fn number(text: &str) -> Result<f64, Mistake> {
+    let not_finite = |number: f64| Err(Mistake::NotFinite(format!("it is {number}: it must be finite")));
     // What other programs write for numbers that are not finite is no expression.
     if let Some(number) = text.trim().parse().ok().filter(|number: &f64| !number.is_finite()) {
         return not_finite(number);
     }
-    let node = read(text)?;
-    // An expression that does not depend on time has the same value at all times.
-    let [first, other] = [0.0, 0.7].map(|t| value(&node, t));
-    match first {
-        _ if first.to_bits() != other.to_bits() && !first.is_nan() => {
-            Err("it depends on the time t: give a number".to_owned())
-        }
+    match value(&read(text, Sort::Number)?, 0.0) {
         number if number.is_finite() => Ok(number),
         number => not_finite(number),
     }
 }
 
-fn read(text: &str) -> Result<Node, String> {
+fn read(text: &str, sort: Sort) -> Result<Node, Mistake> {
+    let unreadable = |what: String| Err(Mistake::Unreadable(what));
     if text.len() > MAX_LENGTH {
-        return Err(format!("the expression is longer than {MAX_LENGTH} characters"));
+        return unreadable(format!("the expression is longer than {MAX_LENGTH} characters"));
     }
     if let Some(strange) = text.chars().find(|&c| matches!(c, ';' | '{' | '}' | '=')) {
-        return Err(format!("`{strange}` is not allowed in an expression of the time t"));
+        return unreadable(format!("`{strange}` is not allowed in {}", sort.name()));
     }
     if text.trim().is_empty() {
-        return Err("a number is missing".to_owned());
+        return unreadable("a number is missing".to_owned());
     }
     let depth = |depth: i32, c| match c {
         '(' if depth >= 0 => depth + 1,
@@ -71,45 +101,61 @@ fn read(text: &str) -> Result<Node, String> {
     };
     match text.chars().fold(0, depth) {
         0 => {}
-        1.. => return Err("a bracket is not closed: `)` is missing".to_owned()),
-        _ => return Err("a bracket is closed that was not opened: `(` is missing".to_owned()),
+        1.. => return unreadable("a bracket is not closed: `)` is missing".to_owned()),
+        _ => return unreadable("a bracket is closed that was not opened: `(` is missing".to_owned()),
     }
     let model = format!("mechanism Input;\ndefinitions {{ x = {text}; }}\n");
     let (tree, mistakes) = parse(&lexer::tokens(&model, usize::MAX));
     if let Some(mistake) = mistakes.first() {
         // The text ends with the semicolon that was added after it.
-        return Err(format!("it cannot be read: {}", mistake.message.replace("found `;`", "found the end")));
+        let message = mistake.message.replace("found `;`", "found the end");
+        return unreadable(format!("it cannot be read: {message}"));
     }
     let [definition] = &tree.definitions[..] else {
-        return Err("give one expression of the time t, as in 2*sin(3*t)".to_owned());
+        let example = if sort == Sort::Number { "pi/4" } else { "2*sin(3*t)" };
+        return unreadable(format!("give {}, as in {example}", sort.name()));
     };
-    node(&definition.value)
+    node(&definition.value, sort)
 }
 
-fn node(expression: &Expr) -> Result<Node, String> {
+fn node(expression: &Expr, sort: Sort) -> Result<Node, Mistake> {
+    let unreadable = |what: String| Err(Mistake::Unreadable(what));
+    let node = |expression: &Expr| self::node(expression, sort);
     let many = |terms: &[(bool, Expr)]| {
-        terms.iter().map(|(inverse, term)| Ok((*inverse, node(term)?))).collect::<Result<Vec<_>, String>>()
+        terms.iter().map(|(inverse, term)| Ok((*inverse, node(term)?))).collect::<Result<Vec<_>, Mistake>>()
     };
     Ok(match &expression.kind {
         ExprKind::Number(text) => {
-            Node::Number(text.parse().map_err(|_| format!("`{text}` is not a number"))?)
+            let wrong = |_| Mistake::Unreadable(format!("`{text}` is not a number"));
+            Node::Number(text.parse().map_err(wrong)?)
         }
         // Models use the name `time`.
-        ExprKind::Name(name) if name == "t" || name == "time" => Node::Time,
+        ExprKind::Name(name) if name == "t" || name == "time" => match sort {
+            Sort::OfTime => Node::Time,
+            Sort::Number => return unreadable("it depends on the time t: give a number".to_owned()),
+        },
         ExprKind::Name(name) if name == "pi" => Node::Number(std::f64::consts::PI),
         ExprKind::Name(name) => {
-            return Err(format!("`{name}` is unknown: an input is an expression of the time t alone"));
+            let cure = match sort {
+                Sort::Number => "a number may have pi and functions in it, but no names of the model",
+                Sort::OfTime => "an input is an expression of the time t alone",
+            };
+            return Err(Mistake::UnknownName(format!("`{name}` is unknown: {cure}")));
         }
         ExprKind::Sum(terms) => Node::Sum(many(terms)?),
         ExprKind::Product(terms) => Node::Product(many(terms)?),
         ExprKind::Power(base, exponent) => Node::Power(Box::new(node(base)?), Box::new(node(exponent)?)),
         ExprKind::Neg(inner) => Node::Neg(Box::new(node(inner)?)),
-        ExprKind::Call(name, arguments) => call(&name.text, arguments)?,
-        _ => return Err("only numbers, t, pi, + - * / ^ and functions are allowed".to_owned()),
+        ExprKind::Call(name, arguments) => call(&name.text, arguments, sort)?,
+        _ => {
+            let time = if sort == Sort::OfTime { " t," } else { "" };
+            return unreadable(format!("only numbers,{time} pi, + - * / ^ and functions are allowed"));
+        }
     })
 }
 
-fn call(name: &str, arguments: &[Expr]) -> Result<Node, String> {
+fn call(name: &str, arguments: &[Expr], sort: Sort) -> Result<Node, Mistake> {
+    let node = |argument: &Expr| node(argument, sort);
     let one: Option<fn(f64) -> f64> = match name {
         "sin" => Some(f64::sin),
         "cos" => Some(f64::cos),
@@ -143,10 +189,10 @@ fn call(name: &str, arguments: &[Expr]) -> Result<Node, String> {
     match (one, two, arguments) {
         (Some(function), _, [argument]) => Ok(Node::Call(function, Box::new(node(argument)?))),
         (_, Some(function), [a, b]) => Ok(Node::Call2(function, Box::new(node(a)?), Box::new(node(b)?))),
-        (None, None, _) => Err(format!(
+        (None, None, _) => Err(Mistake::UnknownName(format!(
             "there is no function `{name}`: there are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign min max pow"
-        )),
-        _ => Err(format!("`{name}` does not take {} arguments", arguments.len())),
+        ))),
+        _ => Err(Mistake::Unreadable(format!("`{name}` does not take {} arguments", arguments.len()))),
     }
 }
 
@@ -192,7 +238,7 @@ mod tests {
         for (text, expected) in [("pi/4", std::f64::consts::FRAC_PI_4), (" -2.5e-3", -2.5e-3), ("3", 3.0)] {
             assert_eq!(number(text).unwrap(), expected, "{text}");
         }
-        for text in ["", "t", "1/0", "sqrt(-1)", "NaN", "two", "1,2", "1e999"] {
+        for text in ["", "t", "1/0", "sqrt(-1)", "NaN", "two", "1,2", "1e999", "max(0, t - 1)", "0*t"] {
             assert!(number(text).is_err(), "{text}");
         }
     }

@@ -5,11 +5,13 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use hodograph_generator::files;
+use hodograph_generator::model::mechanism::Mechanism;
 
 use crate::evaluate::Machine;
-use crate::expression;
+use crate::expression::{self, Mistake};
 use crate::json::state::State;
 use crate::json::{Failure, Kind};
+use crate::output;
 use crate::stop::{Outcome, Stop};
 
 /// Largest size of a state, in bytes.
@@ -97,6 +99,9 @@ impl StateArguments {
             }
             in_object = state.read(&text, mechanism)?;
         }
+        let Mechanism { coordinates, speeds, inputs, parameters, .. } = mechanism;
+        let lists = [coordinates, speeds, inputs, parameters];
+        let of_model: Vec<&str> = lists.into_iter().flatten().map(|one| one.name.as_str()).collect();
         let mut named: Vec<String> = Vec::new();
         let of_state = self.state.iter().filter_map(|argument| match given(argument) {
             Given::Numbers(text) => Some(("--state", text)),
@@ -110,11 +115,15 @@ impl StateArguments {
                     .filter(|(name, _)| !name.trim().is_empty())
                     .ok_or_else(|| Stop::Call(format!("{option} {text}: give NAME=NUMBER, as in q1=0.3")))?;
                 let name = name.trim();
-                let value = expression::number(value).map_err(|error| {
-                    Failure::new(Kind::Of(Cause::NotFinite), format!("{option} {name}={value}: {error}"))
-                })?;
+                let value =
+                    expression::number(value).map_err(|mistake| refused(option, name, value, &mistake))?;
                 if named.iter().any(|other| other == name) {
                     return Err(Stop::Call(format!("{option} {text}: {name} is given twice: leave one out")));
+                }
+                if option == "--state" && name == "t" && of_model.contains(&"t") {
+                    output::say(
+                        "note: --state t=.. sets the `t` of the model, not the time: that is given in an object, as in --state '{\"t\":1}'",
+                    );
                 }
                 state.set(mechanism, name, value, option == "--parameter")?;
                 named.push(name.to_owned());
@@ -124,6 +133,20 @@ impl StateArguments {
         state.complete(mechanism, given)?;
         machine.complete(state).map_err(Stop::from)
     }
+}
+
+/// The error of a number that an option gives by name.
+fn refused(option: &str, name: &str, value: &str, mistake: &Mistake) -> Failure {
+    let (kind, cure) = match mistake {
+        // several assignments, with other signs between them
+        Mistake::Unreadable(_) if value.contains([';', '=']) => {
+            (Kind::BadJson, ": commas stand between numbers, as in q1=0.3,u1=2")
+        }
+        Mistake::Unreadable(_) => (Kind::BadJson, ""),
+        Mistake::UnknownName(_) => (Kind::UnknownName, ""),
+        Mistake::NotFinite(_) => (Kind::Of(Cause::NotFinite), ""),
+    };
+    Failure::new(kind, format!("{option} {name}={value}: {mistake}{cure}"))
 }
 
 /// The parts between commas outside brackets.

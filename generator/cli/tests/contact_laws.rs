@@ -77,6 +77,7 @@ fn laws_that_are_none_are_refused() {
         (["--surface", "foot=0.3,0.5,stronge,rolling=0.01"], "derive it anew"),
         (["--spinning", "-0.01"], "the lever arm of spinning friction is -0.01 m"),
         (["--surface", "foot=0.3,0.5,stronge,0.4"], "parts such as mu_static=0.6"),
+        (["--surface", "foot=0.3,0.5,stronge,mu_static=0.5,mu_static=0.6"], "mu_static is given twice"),
     ] {
         let run = simulate(&[&["--until", "1"], &arguments[..]].concat());
         assert!(run.code != 0 && run.stderr.contains(says), "{arguments:?}: {}", run.stderr);

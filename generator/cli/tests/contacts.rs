@@ -92,7 +92,10 @@ fn a_file_is_read_as_standard_input_is() {
     // Less friction than holds it: it slips.
     assert!((numbers(&answers[1]["force"])[2] + 0.05).abs() < 1e-15);
     assert!((numbers(&answers[1]["velocity"])[2] - 0.05).abs() < 1e-15);
-    assert_eq!(hodograph(&["contacts", "no/such/file"], "").code, 2);
+    for wrong in ["no/such/file", folder.path().to_str().unwrap()] {
+        let run = hodograph(&["contacts", wrong], "");
+        assert!(run.told().0 == 2 && run.stderr.contains("cannot read"), "{wrong}: {}", run.stderr);
+    }
 }
 
 #[test]

@@ -147,9 +147,9 @@ fn states_are_given_by_name() {
     for (more, kind) in [
         (&["--state", "q9=1"][..], "unknown_name"),
         (&["--parameter", "q3=1"][..], "unknown_name"),
-        (&["--state", "q3=two"][..], "not_finite"),
+        (&["--state", "q3=two"][..], "unknown_name"),
         (&["--state", "q3=1/0"][..], "not_finite"),
-        (&["--state", "q3=t"][..], "not_finite"),
+        (&["--state", "q3=t"][..], "bad_json"),
         (&["--state", "u2=1"][..], "unknown_name"),
     ] {
         assert_eq!(eval(more).error_kind(), kind, "{more:?}");

@@ -104,8 +104,40 @@ fn wrong_rows_do_not_decide_with_robust_losses() {
     let (square, huber, cap) = (off(&[]), off(&["--huber", "3"]), off(&["--cap", "3"]));
     assert_eq!((square.1, huber.1, cap.1), (None, Some(6), Some(6)));
     assert!(huber.0 < 0.3 * square.0 && cap.0 < 1e-6, "{square:?} {huber:?} {cap:?}");
-    let refused = fit(&data, &["--parameters", "e", "--cap", "0"]);
-    assert!(refused.code == 2 && refused.stderr.contains("must be positive"), "{}", refused.stderr);
+    for option in ["--cap", "--huber"] {
+        let refused = fit(&data, &["--parameters", "e", option, "0"]);
+        let words = format!("{option} 0: the number of errors must be positive");
+        assert!(refused.code == 2 && refused.stderr.contains(&words), "{}", refused.stderr);
+    }
+}
+
+/// One difference for one value is met exactly: it tells no error of it. One sample tells no spread.
+#[test]
+fn errors_need_more_differences_than_values() {
+    let one = "t,z\n0,0.15\n0.05,0.138\n";
+    let answer = fit(one, &["--parameters", "g"]).line();
+    assert!((number(&answer["values"]["g"]) - 9.6).abs() < 1e-9 && answer["differences"] == 1, "{answer}");
+    assert!(answer["errors"]["g"].is_null(), "{answer}");
+    let flown = fit(one, &["--parameters", "g", "--flight", "0.06"]).line();
+    assert!(flown["start_states"][0]["errors"]["z"].is_null(), "{flown}");
+    let two = fit("t,z\n0,0.15\n0.05,0.138\n0.06,0.1327\n", &["--parameters", "g"]).line();
+    assert!(number(&two["errors"]["g"]) > 0.0, "{two}");
+    let spread = fit(&drops(), &["--parameters", "g", "--bootstrap", "1"]);
+    assert!(spread.told().0 == 2 && spread.stderr.contains("--bootstrap 1: one sample"), "{}", spread.stderr);
+}
+
+/// What cannot be fitted is not offered, and differences whose squares are no numbers are an error.
+#[test]
+fn what_cannot_be_fitted_is_an_error_object() {
+    for name in ["nope", "z", "u"] {
+        let run = fit(&drops(), &["--parameters", name, "--format", "json"]);
+        assert_eq!(run.error_kind(), "unknown_name");
+        let message = run.line()["error"]["message"].as_str().unwrap().to_owned();
+        let (_, offered) = message.split_once(": there are ").unwrap();
+        assert_eq!(offered, "m, g, a, w, mu, e, mu.table, e.table", "{message}");
+    }
+    let far = fit("t,z\n0,1e300\n0.1,0.1\n", &["--parameters", "g", "--format", "json"]);
+    assert_eq!(far.error_kind(), "not_finite");
 }
 
 #[test]
@@ -121,6 +153,10 @@ fn data_that_are_wrong_are_refused_at_their_place() {
         ("t,z,z\n0,0.1,0.1\n", "occurs twice"),
         ("t\n0\n1\n", "no column holds"),
         ("trajectory,t,z\na,0,0.1\na,0.1,0.1\nb,0,0.1\nb,0.1,0.1\na,0,0.1\n", "has rows in two places"),
+        (
+            "trajectory,t,z\na,0,0.1\nb,0,0.1\na,0.1,0.1\nb,0.1,0.1\n",
+            "line 4: trajectory a has rows in two places",
+        ),
     ] {
         let run = fit(data, &["--parameters", "e"]);
         assert_eq!(run.code, 2, "{data}: {}", run.stderr);

@@ -57,4 +57,6 @@ fn names_and_times_that_are_wrong_are_refused() {
     let run = hodograph(&[&["gradient", &path, "--by", "m", "--at", "1,0.5"], &surface[..]].concat(), "");
     assert_eq!(run.code, 2);
     assert!(run.stderr.contains("must rise"), "{}", run.stderr);
+    let run = hodograph(&[&["gradient", &path, "--by", "m", "--at", "0.5,0.5"], &surface[..]].concat(), "");
+    assert!(run.told().0 == 2 && run.stderr.contains("must rise: 0.5 is given twice"), "{}", run.stderr);
 }

@@ -411,4 +411,10 @@ fn sets_of_outcomes_are_written() {
         let run = simulate(more);
         assert!(run.code == 2 && run.stderr.contains(told), "{more:?}: {}", run.stderr);
     }
+    let lonely = hodograph(&[&["simulate", &groove, "--seed", "5"], &surface[..]].concat(), "");
+    assert!(
+        lonely.told().0 == 2 && lonely.stderr.contains("--seed is of --outcomes alone"),
+        "{}",
+        lonely.stderr
+    );
 }

@@ -44,6 +44,42 @@ fn a_rimless_wheel_has_its_multiplier() {
     assert!(run.code == 2 && run.stderr.contains("lift_off"), "{}", run.stderr);
 }
 
+/// Counts are whole numbers, and given once.
+#[test]
+fn what_ends_a_period_is_read_with_care() {
+    let path = path("rimless_wheel.mech");
+    for (text, why) in [
+        ("collision:second:-1", "the count is -1"),
+        ("collision:second:0", "the count is 0"),
+        ("collision:second:1.5", "the count is 1.5"),
+        ("collision:second:2:3", "give one contact and one count"),
+        ("collision:fourth", "there is no contact `fourth`"),
+    ] {
+        let run =
+            hodograph(&["orbit", &path, "--return", text, "--mu", "2", "--e", "0", "--law", "poisson"], "");
+        assert!(run.told().0 == 2 && run.stderr.contains(why), "{text}: {}", run.stderr);
+    }
+    let call = ["orbit", &path, "--return", "collision:second", "--follow", "q=0..1"];
+    let run = hodograph(&[&call[..], &["--mu", "2", "--e", "0", "--law", "poisson"]].concat(), "");
+    assert_eq!(run.error_kind(), "unknown_name");
+}
+
+/// A branch ends at the end of its range, beyond which there may be no motion: e is at most 1.
+#[test]
+fn a_branch_ends_at_the_end_of_its_range() {
+    let path = path("ball_on_plate.mech");
+    for (range, end) in [("mu=0.3..0", 0.0), ("e=0.7..0.75", 0.75)] {
+        let call = ["orbit", &path, "--period", "2*pi/60", "--follow", range, "--parameter", "a=0.002"];
+        let more = ["--state", "t=0.05,z=0.0139,u=0.14", "--mu", "0", "--e", "0.7", "--law", "newton"];
+        let run = hodograph(&[&call[..], &more].concat(), "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let answer = run.line();
+        let last = answer["motions"].as_array().unwrap().last().unwrap();
+        assert!(answer.get("ended").is_none() && number(&last["value"]) == end, "{answer}");
+        assert!(number(&last["residual"]) < 1e-9, "{last}");
+    }
+}
+
 /// The locked motion of a ball on a plate doubles its period where (1 + e)^2 a w^2 sin(phi) = 2 g (1 + e^2).
 #[test]
 fn a_branch_doubles_its_period() {

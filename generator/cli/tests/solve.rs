@@ -161,7 +161,14 @@ fn numbers_read_back_exactly() {
 
 #[test]
 fn wrong_calls_exit_with_2() {
-    for arguments in [&["solve", "--method", "guess"][..], &["solve", "x"], &["slove"], &[]] {
+    for arguments in [
+        &["solve", "--method", "guess"][..],
+        &["solve", "--at=-1"],
+        &["solve", "--at", "2,nan"],
+        &["solve", "x"],
+        &["slove"],
+        &[],
+    ] {
         let run = hodograph(arguments, "");
         assert_eq!(run.code, 2, "{arguments:?}");
         assert!(run.stdout.is_empty() && !run.stderr.is_empty());

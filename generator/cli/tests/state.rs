@@ -88,6 +88,32 @@ fn wrong_states_are_named() {
     }
 }
 
+/// Numbers by name that are none have the kind of their mistake, and a cure that is one.
+#[test]
+fn wrong_numbers_are_named() {
+    for (option, text, kind, part) in [
+        ("--state", "q1=", "bad_json", "a number is missing"),
+        ("--state", "q1=2*", "bad_json", "cannot be read"),
+        ("--state", "q1=l", "unknown_name", "`l` is unknown: a number may have"),
+        ("--state", "q1=foo(1)", "unknown_name", "there is no function `foo`"),
+        ("--state", "q1=0.3;u1=1", "bad_json", "commas stand between numbers"),
+        ("--state", "q1=max(0,t-1)", "bad_json", "it depends on the time t"),
+        ("--state", "q1=1/0", "not_finite", "it must be finite"),
+        ("--parameter", "q1=0.5", "unknown_name", "give it as --state q1=0.5"),
+        ("--parameter", "u1=1", "unknown_name", "`u1` is a speed, no parameter: give it as --state u1=1"),
+        ("--parameter", "u2=1", "unknown_name", "`u2` is a dependent speed"),
+        ("--parameter", "gama=1", "unknown_name", "did you mean `gamma`?"),
+    ] {
+        let run = hodograph(&["eval", &model("two_sleds"), option, text], "");
+        assert_eq!(run.error_kind(), kind, "{text}");
+        assert!(
+            message(&run).contains(part) && !message(&run).contains("input is"),
+            "{text}: {}",
+            message(&run)
+        );
+    }
+}
+
 #[test]
 fn loops_are_completed_from_a_guess() {
     // The file's own values are consistent to their last digits, and stay.

@@ -61,6 +61,14 @@ fn fitted() -> tempfile::TempDir {
     folder
 }
 
+/// The model of the fit with an input.
+fn driven() -> String {
+    let model = root().join("simulation/gradients/tests/models/ball_on_plate.mech");
+    let text = std::fs::read_to_string(model).unwrap();
+    let text = text.replace("coordinates {", "inputs { F: N = 0 }\ncoordinates {");
+    text.replace("loads { gravity: -g*N.z; }", "loads { gravity: -g*N.z; force on P: F*N.z; }")
+}
+
 fn validate(folder: &Path, more: &[&str]) -> Run {
     let (fit, data) = (folder.join("fit.json"), folder.join("data.csv"));
     hodograph(&[&["validate", fit.to_str().unwrap(), data.to_str().unwrap()], more].concat(), "")
@@ -148,6 +156,21 @@ fn motions_of_the_fit_are_told() {
     assert!(answer["right"].is_null() && answer.get("difference").is_none());
 }
 
+/// Neither a fit nor its judgement follows inputs yet: both say so where the answer would stand.
+#[test]
+fn inputs_are_an_error_object() {
+    let folder = fitted();
+    let driven = write(folder.path(), "driven.mech", &driven());
+    let run = validate(folder.path(), &["--model", &driven, "--format", "json"]);
+    assert_eq!(run.error_kind(), "failed_motion");
+    let data = folder.path().join("data.csv").display().to_string();
+    let call = ["fit", &data, &driven, "--parameters", "g", "--parameter", "a=0", "--format"];
+    let json = hodograph(&[&call[..], &["json"]].concat(), "");
+    assert_eq!(json.error_kind(), "failed_motion");
+    let told = hodograph(&[&call[..], &["table"]].concat(), "");
+    assert!(told.told().0 == 1 && told.stderr.contains("with inputs are not fitted yet"), "{}", told.stderr);
+}
+
 #[test]
 fn wrong_files_are_refused() {
     let folder = fitted();
@@ -171,6 +194,31 @@ fn wrong_files_are_refused() {
         let run = validate(folder.path(), &[option, &data]);
         assert!(run.code == 2 && run.stderr.contains("would overwrite"), "{}", run.stderr);
     }
+    // the model and the state that the fit names are read too
+    let model = root().join("simulation/gradients/tests/models/ball_on_plate.mech");
+    let own = folder.path().join("own.mech").display().to_string();
+    std::fs::copy(&model, &own).unwrap();
+    let start = write(folder.path(), "start.json", "{}");
+    let text = std::fs::read_to_string(folder.path().join("fit.json")).unwrap();
+    let mut fit: Value = serde_json::from_str(&text).unwrap();
+    fit["model"] = own.as_str().into();
+    fit["options"].as_array_mut().unwrap().push(format!("--state={start}").into());
+    write(folder.path(), "fit.json", &fit.to_string());
+    let derivation = folder.path().join("own.derivation").display().to_string();
+    for (option, path) in
+        [("--predictions", &own), ("--html", &own), ("--html", &derivation), ("--html", &start)]
+    {
+        let run = validate(folder.path(), &[option, path]);
+        assert!(run.code == 2 && run.stderr.contains("would overwrite"), "{option} {path}: {}", run.stderr);
+    }
+    assert_eq!(std::fs::read(&own).unwrap(), std::fs::read(&model).unwrap());
+    assert_eq!(std::fs::read_to_string(&start).unwrap(), "{}");
+    let run = validate(folder.path(), &["--seed", "2"]);
+    assert!(run.code == 2 && run.stderr.contains("--seed is of --noise alone"), "{}", run.stderr);
+    fit["units"]["z"] = 0.into();
+    write(folder.path(), "fit.json", &fit.to_string());
+    let run = validate(folder.path(), &[]);
+    assert!(run.code == 2 && run.stderr.contains("the unit of z is 0"), "{}", run.stderr);
     write(folder.path(), "fit.json", "{}");
     let run = validate(folder.path(), &[]);
     assert!(run.code == 2 && run.stderr.contains("no answer of `hodograph fit"), "{}", run.stderr);

@@ -97,6 +97,68 @@ fn what_is_read_is_never_written_over() {
     }
 }
 
+/// Neither is what a model imports, directly or through others, by any command that writes.
+#[test]
+fn what_a_model_imports_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let files = [
+        (
+            "rig.mech",
+            "mechanism Rig;\nimport \"near.svg\";\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\n\
+             points { P = O + q1*N.x; }\nparticles { A { point: P, mass: m } }\nuse Near as near(h: P);\n",
+        ),
+        ("near.svg", "import \"far.html\";\npart Near(h: point) { use Far as far(h: h); }\n"),
+        ("far.html", "part Far(h: point) { points { T = h + 0; } }\n"),
+    ];
+    for (name, text) in files {
+        fs::write(place(name), text).unwrap();
+    }
+    let (rig, near, far) = (place("rig.mech"), place("near.svg"), place("far.html"));
+    let checked = hodograph(&["check", &rig], "");
+    assert_eq!(checked.code, 0, "{}", checked.stderr);
+    for call in [
+        &["simulate", &rig, "--plot", &near][..],
+        &["simulate", &rig, "--html", &far],
+        &["plot", "--sketch", &rig, "-o", &near],
+        &["export", "--fmu", &rig, "-o", &rig],
+        &["export", "--fmu", &rig, "-o", &place("rig.derivation")],
+        &["export", "--fmu", &rig, "-o", &far],
+    ] {
+        let run = hodograph(call, "");
+        assert!(run.told().0 == 2 && run.stderr.contains("would overwrite"), "{call:?} {}", run.stderr);
+    }
+    for (name, text) in files {
+        assert_eq!(fs::read_to_string(place(name)).unwrap(), text, "{name}");
+    }
+}
+
+/// A quantity called as a column of the table would stand there twice.
+#[test]
+fn columns_of_a_table_have_different_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("slow.mech");
+    let text = "mechanism Slow;\nparameters { m: kg = 1 }\ncoordinates { t: m = 1 }\nspeeds { v: m/s = 1 }\n\
+        points { P = O + t*N.x; }\nparticles { A { point: P, mass: m } }\nkinematics { d(t)/dt = v; }\n";
+    fs::write(&path, text).unwrap();
+    let path = path.display().to_string();
+    let call = ["simulate", &path, "--until", "0.1", "--format"];
+    let table = hodograph(&[&call[..], &["csv"]].concat(), "");
+    assert!(
+        table.told().0 == 2 && table.stderr.contains("the column `t` would stand there twice"),
+        "{}",
+        table.stderr
+    );
+    let lines = hodograph(&[&call[..], &["json", "--state", "t=3"]].concat(), "");
+    assert_eq!(lines.code, 0, "{}", lines.stderr);
+    assert!(lines.stderr.contains("sets the `t` of the model, not the time"), "{}", lines.stderr);
+    assert_eq!((&lines.lines()[0]["t"], &lines.lines()[0]["q"]["t"]), (&0.0.into(), &3.0.into()));
+    let data = folder.path().join("data.csv");
+    fs::write(&data, "t,v\n0,1\n1,1\n").unwrap();
+    let fit = hodograph(&["fit", data.to_str().unwrap(), &path, "--parameters", "m"], "");
+    assert!(fit.told().0 == 2 && fit.stderr.contains("could be two things"), "{}", fit.stderr);
+}
+
 /// The potential energy of the bicycle is not a function of its coordinates: it is said, and neither it nor a
 /// sum is drawn or recorded.
 #[test]

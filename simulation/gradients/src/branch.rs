@@ -19,7 +19,7 @@ use crate::shooting::{Nodes, Returned, Task};
 pub struct BranchPoint {
     /// the value of the parameter
     pub value: f64,
-    /// the motion
+    /// the motion, with its derivatives by the parameter: NaN where, at the end of the range, it has none
     pub orbit: Orbit,
 }
 
@@ -78,7 +78,8 @@ const LOCATED_PART: f64 = 1e-13;
 const MAX_EVALUATIONS: usize = 40;
 
 /// Follows the periodic motion next to a start state from the value `from` of a parameter (or of mu or e) to
-/// `to`, in at most `most` points. The branch may turn back; it ends where it leaves the range.
+/// `to`, in at most `most` points. The branch may turn back; it ends where it would leave the range, with the motion at that
+/// end of it.
 ///
 /// # Errors
 ///
@@ -107,10 +108,12 @@ pub fn follow_branch(
     toward[n] = (to - from).signum();
     let mut point = Point::new(found, from, &scale, &toward);
     let mut branch = Branch { points: vec![point.public()], changes: Vec::new(), ended: None };
+    let outside = |value: f64| (value - from) * (value - to) > 0.0;
     let mut h = FIRST_STEP;
     while branch.points.len() < most {
-        let next = match family.step(&point, h, &scale) {
-            Ok(next) => next,
+        let reached = family.within(&point, h, (from, to), &scale);
+        let (next, made, last) = match reached {
+            Ok(reached) => reached,
             Err(error) if h <= MIN_STEP => {
                 branch.ended = Some(error.to_string());
                 break;
@@ -122,16 +125,15 @@ pub fn follow_branch(
         };
         for kind in [ChangeKind::Fold, ChangeKind::PeriodDoubling, ChangeKind::Crossing] {
             if point.test(kind) * next.test(kind) < 0.0
-                && let Some(at) = family.locate(&point, &next, h, &scale, kind)
+                && let Some(at) = family.locate(&point, &next, made, &scale, kind)
+                && !outside(at.value)
             {
                 branch.changes.push(Change { kind, at: at.public() });
             }
         }
-        let outside = |value: f64| (value - from) * (value - to) > 0.0;
-        let left = outside(next.value);
         point = next;
         branch.points.push(point.public());
-        if left {
+        if last {
             break;
         }
         h = (1.5 * h).min(MAX_STEP);
@@ -173,6 +175,15 @@ impl Point {
         let crossing = bordered(&off, &orbit.by, scale, &tangent).determinant();
         let tests = [tangent[n], doubling, crossing];
         Point { orbit, states, nodes, value, tangent, tests }
+    }
+
+    /// A point without derivatives by the parameter, after which the branch is not followed: it tells of no change.
+    fn last(found: Found, value: f64, tangent: DVector<f64>) -> Self {
+        let Found { states, returned, nodes } = found;
+        let orbit = returned.orbit(&states, &nodes);
+        let by = DMatrix::from_element(orbit.state.len(), 1, f64::NAN);
+        let orbit = Orbit { by, ..orbit };
+        Point { orbit, states, nodes, value, tangent, tests: [f64::NAN; 3] }
     }
 
     fn test(&self, kind: ChangeKind) -> f64 {
@@ -219,37 +230,103 @@ impl Family<'_> {
         &self,
         nodes: &Nodes,
         value: f64,
+        by: &[By],
         ask: impl FnOnce(&Task<'_>) -> Result<R, OrbitError>,
     ) -> Result<R, OrbitError> {
         let (mechanism, options) = self.at(value)?;
-        let by = [self.by];
         let Self { start, periodic, .. } = *self;
-        ask(&Task { mechanism: &mechanism, start, options: &options, periodic, by: &by, nodes })
+        ask(&Task { mechanism: &mechanism, start, options: &options, periodic, by, nodes })
     }
 
-    /// The return from these states, which are moved so that closed contacts stay closed.
-    fn returned(&self, nodes: &Nodes, states: &mut [f64], value: f64) -> Result<Returned, OrbitError> {
-        self.with(nodes, value, |task| {
+    /// The return from these states, which are moved so that closed contacts stay closed, with derivatives by `by`.
+    fn returned(
+        &self,
+        nodes: &Nodes,
+        states: &mut [f64],
+        value: f64,
+        by: &[By],
+    ) -> Result<Returned, OrbitError> {
+        self.with(nodes, value, by, |task| {
             task.close(states)?;
             task.returned(states)
         })
     }
 
-    /// The point of the branch at the distance `h` along the tangent.
-    fn step(&self, from: &Point, h: f64, scale: &[f64]) -> Result<Point, OrbitError> {
+    /// The point of the branch at the distance `h` along the tangent, or, where that is outside of the range, the point at its
+    /// end; with the distance, and whether it is the end.
+    fn within(
+        &self,
+        from: &Point,
+        h: f64,
+        range: (f64, f64),
+        scale: &[f64],
+    ) -> Result<(Point, f64, bool), OrbitError> {
+        let end = |value: f64| {
+            let (least, greatest) = (range.0.min(range.1), range.0.max(range.1));
+            Some(value.clamp(least, greatest)).filter(|end| *end != value)
+        };
+        let n = from.orbit.state.len();
+        let mut ahead = from.value + h * from.tangent[n] * scale[n];
+        if end(ahead).is_none() {
+            let next = self.step(from, h, scale)?;
+            match end(next.value) {
+                None => return Ok((next, h, false)),
+                // the correction has left the range
+                Some(_) => ahead = next.value,
+            }
+        }
+        let limit = end(ahead).unwrap_or(ahead);
+        let part = (limit - from.value) / (ahead - from.value);
+        Ok((self.at_end(from, part * h, limit, scale)?, part * h, true))
+    }
+
+    /// The nodes, states and value at the distance `h` along the tangent.
+    fn ahead(&self, from: &Point, h: f64, scale: &[f64]) -> Result<(Nodes, Vec<f64>, f64), OrbitError> {
         let n = from.orbit.state.len();
         // Times of events change along the branch, and nodes keep away from them.
         let (nodes, mut states) = if from.nodes.count() > 1 {
-            self.with(&from.nodes, from.value, |task| task.divided(&from.states))?
+            self.with(&from.nodes, from.value, &[self.by], |task| task.divided(&from.states))?
         } else {
             (from.nodes.clone(), from.states.clone())
         };
         let ahead = |place: usize, value: f64| value + h * from.tangent[place] * scale[place];
         states.iter_mut().take(n).enumerate().for_each(|(place, value)| *value = ahead(place, *value));
-        let mut value = ahead(n, from.value);
+        Ok((nodes, states, ahead(n, from.value)))
+    }
+
+    /// The last point, at the value at which the range ends, next to the distance `h` along the tangent. It needs no derivative
+    /// by the parameter, which a motion at the end of what is possible may not have (without friction, for instance).
+    fn at_end(&self, from: &Point, h: f64, value: f64, scale: &[f64]) -> Result<Point, OrbitError> {
+        let (nodes, mut states, _) = self.ahead(from, h, scale)?;
+        let mut before = f64::INFINITY;
+        let mut steps = 0;
+        let returned = loop {
+            let here = self.returned(&nodes, &mut states, value, &[])?;
+            let settled = here.residual >= 0.5 * before || here.residual < 1e-14;
+            if here.residual <= TOLERANCE && (settled || steps == NEWTON_STEPS) {
+                break here;
+            }
+            if steps == NEWTON_STEPS {
+                return Err(OrbitError::NotFound(here.residual));
+            }
+            before = here.residual;
+            steps += 1;
+            let change = solve(&here.jacobian(), &-here.difference());
+            states.iter_mut().zip(change.iter()).for_each(|(value, change)| *value += change);
+        };
+        match self.returned(&nodes, &mut states, value, &[self.by]) {
+            Ok(returned) => Ok(Point::new(Found { states, returned, nodes }, value, scale, &from.tangent)),
+            Err(_) => Ok(Point::last(Found { states, returned, nodes }, value, from.tangent.clone())),
+        }
+    }
+
+    /// The point of the branch at the distance `h` along the tangent.
+    fn step(&self, from: &Point, h: f64, scale: &[f64]) -> Result<Point, OrbitError> {
+        let n = from.orbit.state.len();
+        let (nodes, mut states, mut value) = self.ahead(from, h, scale)?;
         let mut before = f64::INFINITY;
         for _ in 0..NEWTON_STEPS {
-            let here = self.returned(&nodes, &mut states, value)?;
+            let here = self.returned(&nodes, &mut states, value, &[self.by])?;
             if here.residual <= TOLERANCE && (here.residual >= 0.5 * before || here.residual < 1e-14) {
                 let found = Found { states, returned: here, nodes };
                 return Ok(Point::new(found, value, scale, &from.tangent));
@@ -270,7 +347,7 @@ impl Family<'_> {
                 .for_each(|(place, value)| *value += change[place] * scale[place % n]);
             value += change[all] * scale[n];
         }
-        let here = self.returned(&nodes, &mut states, value)?;
+        let here = self.returned(&nodes, &mut states, value, &[self.by])?;
         if here.residual > TOLERANCE {
             return Err(OrbitError::NotFound(here.residual));
         }

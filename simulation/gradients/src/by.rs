@@ -76,6 +76,30 @@ impl By {
         })
     }
 
+    /// The variable with this name that may be fitted, or through which a motion may be followed: a parameter, mu or e.
+    ///
+    /// # Errors
+    ///
+    /// A sentence with the names that may.
+    pub fn adjustable(mechanism: &InterpretedMechanism, name: &str) -> Result<Self, String> {
+        let found = By::named(mechanism, name).ok();
+        let may = |by: &By| matches!(by, By::Parameter(_) | By::Friction(_) | By::Restitution(_));
+        found.filter(may).ok_or_else(|| {
+            let mut all = names(mechanism, ComponentKind::Parameter);
+            let contacts = names(mechanism, ComponentKind::Contact);
+            if !contacts.is_empty() {
+                all.extend(["mu".to_owned(), "e".to_owned()]);
+            }
+            all.extend(contacts.into_iter().flat_map(|name| [format!("mu.{name}"), format!("e.{name}")]));
+            let there = if all.is_empty() {
+                "there are none".to_owned()
+            } else {
+                format!("there are {}", all.join(", "))
+            };
+            format!("`{name}` is no parameter that may change, nor mu or e of a contact: {there}")
+        })
+    }
+
     /// The name that [`By::named`] reads.
     pub fn name(self, mechanism: &InterpretedMechanism) -> String {
         let of = |kind, index| mechanism.component(kind, index).map_or("?", |component| component.name);

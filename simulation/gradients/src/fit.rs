@@ -29,7 +29,8 @@ pub struct Fit {
     pub outliers: usize,
     /// the number of differences
     pub differences: usize,
-    /// standard errors from the curvature of the sum of what the differences cost, and from what remains of it
+    /// standard errors from the curvature of the sum of what the differences cost, and from what remains of it; infinite
+    /// where the data do not determine a value, and with no more differences than values
     pub errors: Vec<f64>,
     /// correlations of the values
     pub correlations: DMatrix<f64>,
@@ -99,8 +100,9 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
             covariance += vector * vector.transpose() * (square / free / value);
         }
     }
-    // A value in an undetermined direction has no error.
-    let lost = |place: usize| undetermined.iter().any(|direction| direction[place].abs() > 1e-6);
+    // A value in an undetermined direction has no error, and none has one where no difference is left that tells of it.
+    let exact = count <= values.len();
+    let lost = |place: usize| exact || undetermined.iter().any(|direction| direction[place].abs() > 1e-6);
     let own = |place: usize| f64::sqrt(covariance[(place, place)]);
     let errors =
         (0..values.len()).map(|place| if lost(place) { f64::INFINITY } else { own(place) * scale[place] });
@@ -152,6 +154,9 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
     }
     if task.starts == 0 {
         return bad("a fit has at least one start".to_owned());
+    }
+    if task.bootstrap == 1 {
+        return bad("one bootstrap sample has no spread: draw two at least".to_owned());
     }
     if task.bootstrap > 0 && task.trajectories.len() < 2 {
         return bad("a bootstrap draws among trajectories: it needs two at least".to_owned());
@@ -210,7 +215,6 @@ fn bootstrap_spread(problem: &Problem<'_>, values: &[f64]) -> Result<Vec<f64>, F
         }
     }
     let n = problem.task.bootstrap as f64;
-    let deviation =
-        |(sum, squares): &(f64, f64)| ((squares - sum * sum / n) / (n - 1.0).max(1.0)).max(0.0).sqrt();
+    let deviation = |(sum, squares): &(f64, f64)| ((squares - sum * sum / n) / (n - 1.0)).max(0.0).sqrt();
     Ok(sums.iter().map(deviation).collect())
 }

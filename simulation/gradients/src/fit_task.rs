@@ -23,7 +23,7 @@ pub struct FitTask<'a> {
     /// number of starts, at least 1: that of the mechanism and the options, and others at random, from a quarter to four
     /// times its values
     pub starts: usize,
-    /// number of bootstrap samples: trajectories are drawn with replacement and fitted again
+    /// number of bootstrap samples, none or two at least: trajectories are drawn with replacement and fitted again
     pub bootstrap: usize,
     /// the seed of the starts and the bootstrap samples
     pub seed: u64,
@@ -35,6 +35,8 @@ pub struct FitTask<'a> {
 pub enum FitError {
     /// A motion cannot be simulated with the initial values: the trajectory, and the error.
     Motion(String, GradientError),
+    /// The differences between this trajectory and its motion are out of the range of doubles.
+    NotFinite(String),
     /// The task has a mistake.
     BadRequest(String),
 }
@@ -43,6 +45,11 @@ impl fmt::Display for FitError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Motion(name, error) => write!(out, "trajectory {name}: {error}"),
+            Self::NotFinite(name) => write!(
+                out,
+                "trajectory {name}: the squares of its differences are out of the range of doubles: look at its start, and at the errors of \
+                 its measurements"
+            ),
             Self::BadRequest(what) => out.write_str(what),
         }
     }

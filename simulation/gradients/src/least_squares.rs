@@ -86,7 +86,11 @@ impl Problem<'_> {
                 differentiate(&mechanism, &start, options.clone(), self.task.variables, &trajectory.times);
             let found = found.map_err(|error| FitError::Motion(trajectory.name.clone(), error))?;
             let states: Vec<Vec<f64>> = found.samples.iter().map(|sample| sample.state.clone()).collect();
-            all.extend(self.differences_of(trajectory, &states));
+            let differences = self.differences_of(trajectory, &states);
+            if !differences.iter().map(|difference| difference * difference).sum::<f64>().is_finite() {
+                return Err(FitError::NotFinite(trajectory.name.clone()));
+            }
+            all.extend(differences);
             if found.undefined.is_some() {
                 without.push(trajectory.name.clone());
                 rows.extend(self.by_differences(values, trajectory)?);

@@ -83,7 +83,8 @@ pub fn fit_start(
     let floor = UNDETERMINED * values.max();
     let Some(directions) = &decomposed.v_t else { return bad("its start cannot be fitted".to_owned()) };
     let known = values.iter().filter(|value| **value > floor).count();
-    let square = off.norm_squared() / off.len().saturating_sub(known).max(1) as f64;
+    let free = off.len().saturating_sub(known);
+    let square = off.norm_squared() / free.max(1) as f64;
     let (mut covariance, mut determined) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));
     for (value, direction) in values.iter().zip(directions.row_iter()) {
         if *value > floor {
@@ -92,7 +93,8 @@ pub fn fit_start(
         }
     }
     let error = |place: usize| {
-        let lost = 1.0 - determined[(place, place)] > 1e-6;
+        // without a difference beyond what they determine, the samples tell no error
+        let lost = free == 0 || 1.0 - determined[(place, place)] > 1e-6;
         if lost { f64::INFINITY } else { f64::sqrt(covariance[(place, place)]) }
     };
     let errors = (0..count).map(error).collect();

@@ -95,7 +95,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         return answer_lines(arguments, &mut io::stdin().lock(), "standard input");
     }
-    let file = File::open(&arguments.file).map_err(|error| Stop::unreadable(&arguments.file, &error))?;
+    let unreadable = |error: io::Error| Stop::unreadable(&arguments.file, &error);
+    let file = File::open(&arguments.file).map_err(unreadable)?;
+    if file.metadata().map_err(unreadable)?.is_dir() {
+        return Err(unreadable(io::ErrorKind::IsADirectory.into()));
+    }
     let name = output::visible(&arguments.file.display().to_string());
     answer_lines(arguments, &mut BufReader::new(file), &name)
 }

@@ -96,6 +96,7 @@ fn one(
         output::say(format_args!("{} is fresh", path.display()));
         return Ok(true);
     }
+    output::check_distinct(&[&path], &model::imported(&entry.source))?;
     let (_, text) = derivation::derive(model, &arguments.limits)?;
     derivation::write(&path, &text)?;
     output::say(format_args!("{} written", path.display()));

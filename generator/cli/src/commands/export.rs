@@ -120,6 +120,7 @@ fn library(arguments: &Arguments) -> Outcome {
 
 fn unit(arguments: &Arguments) -> Outcome {
     output::check(&arguments.output)?;
+    output::check_distinct(&[&arguments.output], &model::files_of(&arguments.model))?;
     let runtime = arguments.hodograph.as_deref();
     let root = runtime.map(|runtime| runtime.join(".."));
     let own = root.as_ref().map(|root| root.join("bindings/fmu"));

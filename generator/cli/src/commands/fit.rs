@@ -5,7 +5,7 @@ pub mod table_of_motions;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use hodograph::{ComponentKind, Mechanism as _, Surface};
+use hodograph::{Cause, ComponentKind, Mechanism as _, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_gradients::{By, Fit, FitError, FitTask, FittedStart, Loss, fit};
 use hodograph_interpreter::InterpretedMechanism;
@@ -15,6 +15,7 @@ use self::table_of_motions::Motions;
 use super::motion_arguments::MotionArguments;
 use crate::evaluate::report::{Named, named};
 use crate::expression;
+use crate::json::state::State;
 use crate::json::{Failure, Kind};
 use crate::state_arguments::once;
 use crate::stop::{Outcome, Stop};
@@ -27,6 +28,7 @@ use crate::table::{Table, number};
 /// The data are a CSV file with a column `t` (s) and columns of coordinates and speeds, named as in the model, as `x` or `x [m]`; a
 /// column `trajectory` tells motions apart. The first row of each motion is its start state, which is taken as it is unless
 /// --flight is given; what has no column there is that of the model or of --state. The fit begins at the values that the model and the options give.
+/// Models with inputs are not fitted yet.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -61,7 +63,7 @@ pub struct Arguments {
     /// number of starts: that of the model and the options, and others at random, from a quarter to four times its values
     #[arg(long, value_name = "COUNT", default_value_t = 1)]
     starts: usize,
-    /// number of bootstrap samples: trajectories are drawn with replacement and fitted again, which gives the
+    /// number of bootstrap samples, two at least: trajectories are drawn with replacement and fitted again, which gives the
     /// spread of the values
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     bootstrap: usize,
@@ -80,18 +82,19 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     let names: Vec<&str> = arguments.parameters.iter().map(|name| name.trim()).collect();
+    arguments.check()?;
     once("--parameters", &names)?;
     once("--outputs", &arguments.outputs.iter().map(|name| name.trim()).collect::<Vec<_>>())?;
     arguments.motion.form.write(
         || {
             let state = arguments.motion.state.state(&machine)?;
             let mechanism = machine.interpreted(&state)?;
-            let by: Result<Vec<By>, String> = names.iter().map(|name| By::named(&mechanism, name)).collect();
-            let by = by.map_err(|message| Failure::new(Kind::UnknownName, message))?;
+            without_inputs(&state)?;
+            let by: Result<Vec<By>, String> =
+                names.iter().map(|name| By::adjustable(&mechanism, name)).collect();
+            let by =
+                by.map_err(|message| Failure::new(Kind::UnknownName, format!("--parameters: {message}")))?;
             let start = state.borrowed();
-            if !state.inputs.is_empty() {
-                return Err(Stop::Fault("motions of mechanisms with inputs are not fitted yet".to_owned()));
-            }
             let options = arguments.motion.options(&mechanism, &start)?;
             let mut motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
             let units = arguments.units(&motions, &mechanism)?;
@@ -127,14 +130,48 @@ pub fn run(arguments: &Arguments) -> Outcome {
     )
 }
 
+/// Refuses a mechanism with inputs.
+///
+/// # Errors
+///
+/// `failed_motion`.
+pub(crate) fn without_inputs(state: &State) -> Result<(), Failure> {
+    if state.inputs.is_empty() {
+        return Ok(());
+    }
+    let message = "motions of mechanisms with inputs are not fitted yet: make the inputs parameters of the model, if they are constant";
+    Err(Failure::new(Kind::FailedMotion, message))
+}
+
 pub(crate) fn stop(error: FitError) -> Stop {
     match error {
         FitError::BadRequest(message) => Stop::Call(message),
+        error @ FitError::NotFinite(_) => Failure::new(Kind::Of(Cause::NotFinite), error.to_string()).into(),
         error => Failure::new(Kind::FailedMotion, error.to_string()).into(),
     }
 }
 
 impl Arguments {
+    /// Refuses numbers that mean nothing.
+    fn check(&self) -> Outcome {
+        for (option, size) in [("--huber", self.huber), ("--cap", self.cap)] {
+            if let Some(size) = size
+                && !(size.is_finite() && size > 0.0)
+            {
+                return Err(Stop::Call(format!(
+                    "{option} {size}: the number of errors must be positive, as in {option} 3"
+                )));
+            }
+        }
+        if self.bootstrap == 1 {
+            return Err(Stop::Call(
+                "--bootstrap 1: one sample has no spread: give two at least, as in --bootstrap 200"
+                    .to_owned(),
+            ));
+        }
+        Ok(())
+    }
+
     /// What a difference costs.
     fn loss(&self) -> Loss {
         self.huber.map(Loss::Huber).or(self.cap.map(Loss::Cap)).unwrap_or_default()
@@ -164,7 +201,7 @@ impl Arguments {
 #[derive(Serialize)]
 struct Answer<'a> {
     values: Named<'a, f64>,
-    /// null if the data do not determine a value
+    /// null if the data do not determine a value, or leave no difference beyond the values
     errors: Named<'a, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     bootstrap: Option<Named<'a, f64>>,

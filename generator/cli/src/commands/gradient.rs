@@ -48,6 +48,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let machine = arguments.motion.machine(&arguments.model)?;
     let by: Vec<&str> = arguments.by.iter().map(|name| name.trim()).collect();
     once("--by", &by)?;
+    if let Some(pair) = arguments.at.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(Stop::Call(format!("--at: the times must rise: {} is given twice", pair[0])));
+    }
     let names = Names { model: &machine.mechanism, by };
     arguments.motion.form.write(
         || {

@@ -114,7 +114,8 @@ fn stop(error: OrbitError) -> Stop {
 }
 
 fn variable(mechanism: &InterpretedMechanism, name: &str) -> Outcome<By> {
-    Ok(By::named(mechanism, name).map_err(|message| Failure::new(Kind::UnknownName, message))?)
+    let found = By::adjustable(mechanism, name);
+    Ok(found.map_err(|message| Failure::new(Kind::UnknownName, format!("--follow: {message}")))?)
 }
 
 /// A name and its range.
@@ -151,14 +152,20 @@ impl Arguments {
             (None, Some(text)) => {
                 let mut parts = text.split(':');
                 let event = parts.next().unwrap_or("").to_owned();
-                let (mut contact, mut count) = (None, 1);
+                let call = |message: String| Stop::Call(format!("--return {text}: {message}"));
+                let (mut contact, mut count) = (None, None);
                 for part in parts {
-                    match (part.parse::<usize>(), index(ComponentKind::Contact, part)) {
-                        (_, Some(found)) => contact = Some(found),
-                        (Ok(number), None) => count = number,
-                        (Err(_), None) => {
-                            return Err(Stop::Call(format!("--return {text}: there is no contact `{part}`")));
+                    let twice = match index(ComponentKind::Contact, part) {
+                        Some(found) => contact.replace(found).is_some(),
+                        None if part.parse::<f64>().is_ok() => {
+                            let number = part.parse::<usize>().ok().filter(|number| *number > 0);
+                            let bad = || call(format!("the count is {part}: give a whole number from 1 on"));
+                            count.replace(number.ok_or_else(bad)?).is_some()
                         }
+                        None => return Err(call(format!("there is no contact `{part}`"))),
+                    };
+                    if twice {
+                        return Err(call("give one contact and one count, as in EVENT:CONTACT:2".to_owned()));
                     }
                 }
                 if !Return::EVENTS.contains(&event.as_str()) {
@@ -167,7 +174,7 @@ impl Arguments {
                         Return::EVENTS.join(", ")
                     )));
                 }
-                Return::At { event, contact, count }
+                Return::At { event, contact, count: count.unwrap_or(1) }
             }
             (None, None) => return Err(Stop::Call("give --period or --return".to_owned())),
         };

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use hodograph::{ComponentKind, ReducedMatrix, snapshot_at};
 use hodograph_animation::{Recording, Setup};
-use hodograph_generator::artifact::place;
 use hodograph_generator::files;
 use hodograph_generator::program::Quantity;
 use nalgebra::Vector3;
@@ -14,6 +13,7 @@ use nalgebra::Vector3;
 use crate::derivation::{self, Limits};
 use crate::evaluate::contact::{self, Contact};
 use crate::json::{Failure, Fields, Json};
+use crate::model;
 use crate::output;
 use crate::plot::collision::figure;
 use crate::plot::figure::{Figure, Panel};
@@ -158,7 +158,7 @@ fn check_output(arguments: &Arguments) -> Outcome {
     let Some(path) = &arguments.output else { return Ok(()) };
     let mut read = arguments.state.files();
     if let Some(model) = &arguments.model {
-        read.extend([model.clone(), place::beside(model)]);
+        read.extend(model::files_of(model));
     }
     output::check_distinct(&[path], &read)
 }

@@ -13,7 +13,6 @@ use std::path::PathBuf;
 
 use hodograph::{ComponentKind, Mechanism as _};
 use hodograph_animation::{Setup, Span, Watch};
-use hodograph_generator::artifact::place;
 use hodograph_generator::files;
 use hodograph_generator::format::plain;
 use hodograph_interpreter::{InterpretedMechanism, motion};
@@ -26,6 +25,7 @@ use self::surfaces::MotionSurfaces;
 use crate::answers::is_terminal;
 use crate::derivation::{self, Limits};
 use crate::json::state::State;
+use crate::model;
 use crate::output;
 use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
@@ -122,9 +122,10 @@ fn simulated(arguments: &Arguments) -> Outcome {
     if !(arguments.until.is_none_or(f64::is_finite) && positive(step) && max_step) {
         return Err(Stop::Call("--step and --max-step must be positive and --until finite".to_owned()));
     }
+    arguments.outcomes.check()?;
     let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
     Options::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
-    let mut read = vec![arguments.model.clone(), place::beside(&arguments.model)];
+    let mut read = model::files_of(&arguments.model);
     read.extend(arguments.state.files());
     read.extend(arguments.inputs.clone());
     arguments.pictures.check(&read)?;

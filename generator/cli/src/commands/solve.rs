@@ -49,8 +49,8 @@ pub struct Arguments {
     /// set to zero, m/s [default: slip is followed to its end]
     #[arg(long, value_name = "m/s", value_parser = positive)]
     pub threshold: Option<f64>,
-    /// `exact`: also the state at these normal impulses, N s, which may be beyond the end of the collision
-    #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
+    /// `exact`: also the state at these normal impulses, N s, from 0 on; they may be beyond the end of the collision
+    #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = not_negative)]
     pub at: Vec<f64>,
     #[command(flatten)]
     pub characteristics: CharacteristicsArgument,
@@ -87,10 +87,11 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err("it must be a finite number".to_owned()),
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("it must be a finite number that is not negative: a collision begins with the impulse 0"
+            .to_owned()),
     }
 }
 

@@ -123,7 +123,15 @@ impl State {
         parameters: bool,
     ) -> Result<(), Failure> {
         let is = |list: &[Variable]| list.iter().any(|quantity| quantity.name == name);
+        let option = |what: &str| {
+            let message = format!("`{name}` is a {what}, no parameter: give it as --state {name}={value}");
+            Err(Failure::new(Kind::UnknownName, message))
+        };
         let section = match () {
+            () if parameters && is(&mechanism.coordinates) => return option("coordinate"),
+            () if parameters && is(&mechanism.speeds[..self.speeds.len()]) => return option("speed"),
+            // a dependent one
+            () if parameters && is(&mechanism.speeds) => "u",
             () if parameters || is(&mechanism.parameters) || is(&mechanism.inputs) => "parameters",
             () if is(&mechanism.coordinates) => "q",
             () if is(&mechanism.speeds) => "u",

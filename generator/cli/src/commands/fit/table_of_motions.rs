@@ -1,5 +1,6 @@
 //! Reads measured motions from a CSV file.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use hodograph::{ComponentKind, Mechanism as _, State};
@@ -75,6 +76,13 @@ impl Motions {
             .trim(csv::Trim::All)
             .from_path(path)
             .map_err(|error| wrong(error.to_string()))?;
+        for name in ["t", "trajectory"] {
+            if index_of(mechanism, name).is_some() {
+                return Err(wrong(format!(
+                    "the column `{name}` could be two things, since a quantity of the model has this name too: rename it in the model"
+                )));
+            }
+        }
         let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
         let columns: Result<Vec<Column>, String> = heads.iter().map(|head| column(mechanism, head)).collect();
         let columns = columns.map_err(wrong)?;
@@ -111,22 +119,17 @@ impl Motions {
             let record = record.map_err(|error| wrong(error.to_string()))?;
             rows.push(row(&record, &columns, &heads).map_err(wrong)?);
         }
-        let mut trajectories = Vec::new();
-        let mut from = 0;
-        while from < rows.len() {
-            let name = &rows[from].trajectory;
-            let count = rows[from..].iter().take_while(|row| row.trajectory == *name).count();
-            let known = |other: &Trajectory| other.name == *name;
-            if trajectories.iter().any(known) {
-                let line = rows[from].line;
+        let each: Vec<&[Row]> = rows.chunk_by(|a, b| a.trajectory == b.trajectory).collect();
+        let mut names = HashSet::new();
+        for Row { line, trajectory, .. } in each.iter().map(|rows| &rows[0]) {
+            if !names.insert(trajectory) {
                 return Err(wrong(format!(
-                    "line {line}: trajectory {name} has rows in two places: keep its rows together"
+                    "line {line}: trajectory {trajectory} has rows in two places: the rows of a trajectory must stand together"
                 )));
             }
-            let rows = &rows[from..from + count];
-            trajectories.push(trajectory(mechanism, start, rows, &states, &measured).map_err(wrong)?);
-            from += count;
         }
+        let read = |rows: &&[Row]| trajectory(mechanism, start, rows, &states, &measured);
+        let trajectories = each.iter().map(read).collect::<Result<Vec<_>, _>>().map_err(wrong)?;
         if trajectories.is_empty() {
             return Err(wrong("there are no rows".to_owned()));
         }

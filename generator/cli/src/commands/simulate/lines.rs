@@ -22,6 +22,9 @@ pub enum Format {
     Csv,
 }
 
+/// The columns of CSV before those of coordinates and speeds.
+const OWN_COLUMNS: [&str; 3] = ["t", "event", "contact"];
+
 #[derive(Serialize)]
 struct Sample<'a> {
     t: f64,
@@ -101,11 +104,14 @@ impl<'m> Lines<'m> {
                     .filter_map(move |index| mechanism.component(kind, index))
                     .map(|component| component.name)
             };
-            let head: Vec<&str> = ["t", "event", "contact"]
-                .into_iter()
-                .chain(names(ComponentKind::Coordinate))
-                .chain(names(ComponentKind::Speed))
-                .collect();
+            let quantities = || names(ComponentKind::Coordinate).chain(names(ComponentKind::Speed));
+            if let Some(name) = quantities().find(|name| OWN_COLUMNS.contains(name)) {
+                return Err(Stop::Call(format!(
+                    "--format csv: the column `{name}` would stand there twice, since a quantity of the model has this name too: give \
+                     --format json, or rename it in the model"
+                )));
+            }
+            let head: Vec<&str> = OWN_COLUMNS.into_iter().chain(quantities()).collect();
             lines.write(&csv_row(head)?)?;
         }
         Ok(lines)

@@ -35,15 +35,29 @@ pub struct OutcomesArguments {
         conflicts_with_all = ["spread", "stiffness", "together", "step"]
     )]
     outcomes: Option<u32>,
-    /// with --outcomes: the seed of the draws
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "outcomes")]
-    seed: u64,
+    /// with --outcomes: the seed of the draws [default: 1]
+    #[arg(long, value_name = "NUMBER")]
+    seed: Option<u64>,
 }
 
 impl OutcomesArguments {
+    /// Refuses a seed of nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Stop::Call`].
+    pub fn check(&self) -> Outcome {
+        match (self.outcomes, self.seed) {
+            (None, Some(_)) => {
+                Err(Stop::Call("--seed is of --outcomes alone: give that, or leave it out".to_owned()))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The number of motions and the seed, if a set of outcomes is asked for.
     pub fn asked(&self) -> Option<(usize, u64)> {
-        self.outcomes.map(|count| (count as usize, self.seed))
+        self.outcomes.map(|count| (count as usize, self.seed.unwrap_or(1)))
     }
 }
 

@@ -211,12 +211,18 @@ fn one(text: &str) -> Outcome<(&str, GivenSurface, GivenLaw)> {
     let parts = split(rest);
     let [mu, e, named, more @ ..] = &parts[..] else { return Err(wrong()) };
     let mut given = GivenLaw::default();
+    let mut names = Vec::new();
     for part in more {
         let (part, value) = part.split_once('=').ok_or_else(|| {
             Stop::Call(format!("--surface {text}: give after MU,E,LAW parts such as mu_static=0.6"))
         })?;
+        let part = part.trim();
+        if names.contains(&part) {
+            return Err(Stop::Call(format!("--surface {text}: {part} is given twice: leave one out")));
+        }
+        names.push(part);
         given
-            .set(part.trim(), value.trim())
+            .set(part, value.trim())
             .map_err(|message| Stop::Call(format!("--surface {text}: {message}")))?;
     }
     let number = |text: &str| text.parse::<f64>().map_err(|_| wrong());

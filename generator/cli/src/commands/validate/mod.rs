@@ -22,6 +22,7 @@ use super::fit::table_of_motions::Motions;
 use super::motion_arguments::MotionArguments;
 use crate::answers::FormArgument;
 use crate::expression;
+use crate::model;
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
@@ -52,9 +53,9 @@ pub struct Arguments {
     /// standard errors of the measurements, as x=0.0002,q=0.001: tells the errors that they alone would make
     #[arg(long, value_name = "NAME=NUMBER,..", value_delimiter = ',')]
     noise: Vec<String>,
-    /// the seed of the noise
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
-    seed: u64,
+    /// with --noise: its seed [default: 1]
+    #[arg(long, value_name = "NUMBER")]
+    seed: Option<u64>,
     /// fit the values to each motion by itself: tells the errors that no common values can fall below
     #[arg(long)]
     floor: bool,
@@ -98,17 +99,26 @@ const COARSER: [f64; 2] = [1e2, 1e4];
 ///
 /// [`Stop::Call`] for mistakes in the files or the options.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let written: Vec<&Path> =
-        [&arguments.html, &arguments.predictions].into_iter().flatten().map(PathBuf::as_path).collect();
-    let read =
-        [Some(&arguments.fit), Some(&arguments.data), arguments.model.as_ref(), arguments.against.as_ref()];
-    output::check_distinct(&written, &read.into_iter().flatten().cloned().collect::<Vec<_>>())?;
+    if arguments.seed.is_some() && arguments.noise.is_empty() {
+        return Err(Stop::Call("--seed is of --noise alone: give that, or leave it out".to_owned()));
+    }
     let mut courses = Vec::new();
     let made = report(arguments, &mut courses);
     if let (Ok(report), Some(path)) = (&made, &arguments.html) {
         output::file(path, page::page(report, &courses).as_bytes())?;
     }
     arguments.form.write(|| made, Report::tables)
+}
+
+/// Refuses to overwrite a file that is read: those of the call, and those that the fit names.
+fn check_output(arguments: &Arguments, model: &Path, given: &Given) -> Outcome {
+    let written = [&arguments.html, &arguments.predictions].into_iter().flatten();
+    let written: Vec<&Path> = written.map(PathBuf::as_path).collect();
+    let mut read = vec![arguments.fit.clone(), arguments.data.clone()];
+    read.extend(arguments.against.clone());
+    read.extend(model::files_of(model));
+    read.extend(given.motion.state.files());
+    output::check_distinct(&written, &read)
 }
 
 /// The motions and what predicts them.
@@ -152,12 +162,15 @@ fn report(arguments: &Arguments, courses: &mut Vec<Course>) -> Outcome<Report> {
     let given = Given::try_parse_from(&fitted.options)
         .map_err(|error| call(&arguments.fit, format!("its options cannot be read: {error}")))?;
     let path = arguments.model.clone().unwrap_or_else(|| PathBuf::from(&fitted.model));
+    check_output(arguments, &path, &given)?;
     let machine = given.motion.machine(&path)?;
     let state = given.motion.state.state(&machine)?;
+    super::fit::without_inputs(&state)?;
     let mechanism = machine.interpreted(&state)?;
     let start = state.borrowed();
     let options = given.motion.options(&mechanism, &start)?;
-    let by: Result<Vec<By>, String> = fitted.values.keys().map(|name| By::named(&mechanism, name)).collect();
+    let by: Result<Vec<By>, String> =
+        fitted.values.keys().map(|name| By::adjustable(&mechanism, name)).collect();
     let by = by.map_err(|why| call(&arguments.fit, why))?;
     let values: Vec<f64> = fitted.values.values().copied().collect();
     let (mechanism, options) =
@@ -165,6 +178,10 @@ fn report(arguments: &Arguments, courses: &mut Vec<Course>) -> Outcome<Report> {
     let mut motions = Motions::read(&arguments.data, &mechanism, &start, &fitted.outputs)?;
     let mut units = vec![1.0; motions.measured.len()];
     for (name, unit) in &fitted.units {
+        if !(unit.is_finite() && *unit > 0.0) {
+            let what = format!("the unit of {name} is {unit}, and must be positive: make the fit again");
+            return Err(call(&arguments.fit, what));
+        }
         if let Some(place) = motions.place(&mechanism, name) {
             units[place] = *unit;
         }
@@ -183,7 +200,7 @@ fn report(arguments: &Arguments, courses: &mut Vec<Course>) -> Outcome<Report> {
             Some(matched(path, task.trajectories, read.trajectories)?)
         }
     };
-    let mut random = Noise::new(arguments.seed);
+    let mut random = Noise::new(arguments.seed.unwrap_or(1));
     let mut list = Vec::new();
     let mut predictions = Vec::new();
     for (place, trajectory) in task.trajectories.iter().enumerate() {
@@ -194,7 +211,12 @@ fn report(arguments: &Arguments, courses: &mut Vec<Course>) -> Outcome<Report> {
         };
         let predicted = predict(&task.mechanism, &task.options, measure, trajectory);
         match &predicted {
-            Ok(predicted) => motion.error = Some(measure.error(&trajectory.samples, predicted)),
+            Ok(predicted) => match measure.error(&trajectory.samples, predicted) {
+                error if error.is_infinite() => {
+                    motion.failed = Some("its error is out of the range of doubles".to_owned());
+                }
+                error => motion.error = Some(error),
+            },
             Err(error) => motion.failed = Some(error.to_string()),
         }
         if !within.is_empty() {
