@@ -27,5 +27,6 @@ mod polytopes;
 mod robust;
 mod second_road;
 mod shapes;
+mod sizes;
 mod slips;
 mod stages;

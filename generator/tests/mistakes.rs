@@ -134,6 +134,17 @@ fn said(lines: &[&str]) -> Vec<String> {
     told.iter().map(of).collect()
 }
 
+/// A mark of the order of bytes is no part of the first line.
+#[test]
+fn columns_are_counted_without_a_byte_order_mark() {
+    for text in ["mechanism 5;", "\u{feff}mechanism 5;"] {
+        let source = Source::file("model.mech", text);
+        let found = check(&source).diagnostics;
+        let at = source.location(found[0].primary.span).expect("a place");
+        assert_eq!((at.line, at.column), (1, 11), "{text}");
+    }
+}
+
 #[test]
 fn every_mistake_is_told_at_its_place() {
     assert_eq!(said(&MODEL), [""; 0]);

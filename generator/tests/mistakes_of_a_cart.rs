@@ -190,7 +190,7 @@ const CASES: &[Case] = &[
     ("contact_fixed_point", &[(17, "contacts { floor { point: O, normal: N.y, gap: l } }")],
         &["E081 18:12"]),
     ("contact_gap_const", &[(17, "contacts { floor { point: P of Arm, normal: N.y, gap: l } }")],
-        &["W007 18:55"]),
+        &["E082 18:55"]),
     ("contact_gap_zero_units", &[(17, "contacts { floor { point: P of Arm, normal: N.y, gap: 1 } }")],
         &["E031 18:55"]),
     ("e_two", &[(17, "contacts { floor { point: P of Arm, normal: N.y, gap: dot(position(P), N.y) + 2*l, surface: { mu: 0.3, e: 2, law: newton } } }")],

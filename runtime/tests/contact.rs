@@ -445,6 +445,9 @@ fn inertias_of_any_size_are_judged_alike() {
         let scaled = |parts: [f64; 6]| check_inertia(parts.map(|part| part * size), "Body");
         assert!(scaled([1.0, 1.0, 1.0, 0.01, 0.01, 0.01]).is_ok(), "{size:e}");
         assert!(scaled([1.0, 1.0, 2.5, 0.0, 0.0, 0.0]).is_err(), "{size:e}");
+        // numbers that are stated are rounded: `hodograph check` takes as much
+        assert!(scaled([1.0, 1.0, 2.0 + 1e-10, 0.0, 0.0, 0.0]).is_ok(), "{size:e}");
+        assert!(scaled([1.0, 1.0, 2.0 + 1e-7, 0.0, 0.0, 0.0]).is_err(), "{size:e}");
         assert!(scaled([1.0, 1.0, 1.0, 0.9, 0.0, 0.0]).is_err(), "{size:e}");
     }
 }

@@ -186,3 +186,22 @@ fn definitions_that_square_one_another_are_derived() {
         assert_eq!(outcome(&text), Some(Ok(())), "{step}");
     }
 }
+
+/// Exponents of powers of powers are no larger than the algebra holds.
+#[test]
+fn powers_of_powers_are_derived() {
+    let power = |base: &str| (0..5).fold(base.to_owned(), |power, _| format!("({power})^100"));
+    for base in ["sin(q/l)", "sin(q/l)*cos(q/l)", "1/(1 + (q/l)^2)"] {
+        let text = format!(
+            "mechanism Num;
+            parameters {{ m: kg = 1, l: m = 1, k: N = 1 }}
+            coordinates {{ q: m = 0.999 }}
+            speeds {{ u: m/s }}
+            points {{ P = O + q*N.x; }}
+            particles {{ A {{ point: P, mass: m }} }}
+            loads {{ force on P: k*{}*N.x; }}",
+            power(base)
+        );
+        assert_eq!(outcome(&text), Some(Ok(())), "{base}");
+    }
+}

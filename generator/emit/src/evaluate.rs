@@ -11,7 +11,7 @@ use quote::{format_ident, quote};
 use super::interface::{Failure, Field, InPlace, Method, Signature, Struct, Type};
 use super::routine::Routine;
 use super::{Emitter, Requests};
-use crate::identifiers::{RECORDS, ident, pascal_case};
+use crate::identifiers::{RECORDS, ident, means_another, pascal_case};
 use hodograph_model::rust_names::is_keyword;
 use hodograph_model::suggest::nearest;
 use hodograph_program::program::Quantity;
@@ -158,6 +158,10 @@ impl Emitter<'_> {
         } else if records {
             Some(format!(
                 "the set `{name}` gives a struct `{of_type}`, and the module has a type of this name already: choose another name"
+            ))
+        } else if means_another(&of_type) {
+            Some(format!(
+                "the set `{name}` gives a struct `{of_type}`, and this name means something else in generated code: choose another name"
             ))
         } else if before.iter().any(|other| {
             let other_name = other.name.to_string();

@@ -22,6 +22,14 @@ pub const RECORDS: &[&str] = &[
 /// Other names with a meaning in generated code.
 const RESERVED: &[&str] = &["T", "Result", "Ok", "Err"];
 
+/// The parameters of generated functions that stand for types.
+const GENERIC: &[&str] = &["T", "R"];
+
+/// Whether a name means something else where a type of a generated module is named.
+pub fn means_another(of_type: &str) -> bool {
+    [RESERVED, GENERIC].concat().contains(&of_type) || is_keyword(of_type)
+}
+
 /// `two_sleds` -> `TwoSleds`; capitals stay.
 pub fn pascal_case(name: &str) -> String {
     let mut pascal = String::new();
@@ -64,5 +72,7 @@ mod tests {
         assert_eq!(pascal_case("two_sleds"), "TwoSleds");
         assert_eq!(type_name("speeds"), "SpeedsMechanism");
         assert_eq!(ident("loop").to_string(), "r#loop");
+        assert!(["T", "R", "Self", "Result"].into_iter().all(means_another));
+        assert!(!means_another("Tip") && !means_another("Forcing"));
     }
 }

@@ -262,6 +262,7 @@ impl Source {
         let text = self.text()?;
         let start = (span.start as usize).min(text.len());
         let before = text.get(..start)?;
+        let before = before.strip_prefix('\u{feff}').unwrap_or(before);
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
         Some(Location { line, column })

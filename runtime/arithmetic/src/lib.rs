@@ -6,7 +6,8 @@
 //! * [`trigonometry`]: sine and cosine of a double and of a single, the same on every machine,
 //! * [`elementary`]: the other elementary functions, likewise,
 //! * [`hyperbolic`]: hyperbolic functions of a double, likewise,
-//! * [`DoubleDouble`]: numbers of twice the digits.
+//! * [`DoubleDouble`]: numbers of twice the digits,
+//! * [`POSSIBLE_INERTIA`]: a tolerance, with which both judge inertias alike.
 //!
 //! This package is not part of Hodograph's public interface: any version may change it.
 
@@ -24,3 +25,6 @@ pub mod trigonometry;
 
 pub use double_double::{Component, DoubleDouble};
 pub use fused::{FUSED, mul_add};
+
+/// Inertias may miss what is possible by this much, relative to their size: stated numbers are rounded.
+pub const POSSIBLE_INERTIA: f64 = 1e-9;

@@ -1,6 +1,8 @@
 //! Checks of generated routines: singular states, numbers that are not finite, impossible parameters, lengths
 //! of slices.
 
+use hodograph_arithmetic::POSSIBLE_INERTIA;
+
 use super::{mul_add, number};
 use crate::scalar::larger;
 use crate::{Number, ParameterError, Scalar, StateError};
@@ -110,7 +112,7 @@ pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Resul
     let [xx, yy, zz, xy, yz, zx] = components.map(|part| part / greatest);
     let half = (xx + yy + zz) * number(0.5);
     let size = xx.abs() + yy.abs() + zz.abs() + xy.abs() + yz.abs() + zx.abs();
-    let small = size * T::default_epsilon() * number(64.0);
+    let small = size * larger(T::default_epsilon() * number(64.0), number(POSSIBLE_INERTIA));
     let (a, b, c) = (half - xx, half - yy, half - zz);
     let diagonal = a >= -small && b >= -small && c >= -small;
     let minors = a * b - xy * xy >= -small * size

@@ -18,6 +18,9 @@ use crate::json::{Failure, Fields, Json, Kind, lines::read_line};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
+// models may state no friction that motions refuse
+const _: () = assert!(hodograph_generator::model::mechanism::Surface::MOST_FRICTION == MOST_FRICTION);
+
 /// The longest line, in bytes.
 const MAX_LINE: usize = 1 << 28;
 

@@ -49,7 +49,8 @@ pub fn derive(mechanism: &Mechanism) -> Result<Derived, DerivationError> {
     let mechanism = mechanism.clone();
     match exclusively(move || {
         let mut kinematics = Kinematics::new(&mechanism)?;
-        Ok(outputs::write(&mut kinematics))
+        let derived = outputs::write(&mut kinematics);
+        kinematics.mistake.map_or(Ok(derived), Err)
     }) {
         Ok(result) => result.map_err(DerivationError::Model),
         Err(error) => Err(DerivationError::Session(error)),

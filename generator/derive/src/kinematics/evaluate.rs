@@ -2,11 +2,15 @@
 
 use super::linear_forms::{self, LinearScalar, LinearVector};
 use super::vectors::{add, add_linear, constant, mixed, scale, scale_linear};
-use super::{Kinematics, Mixed, MixedLinear};
+use super::{DeriveError, Kinematics, Mixed, MixedLinear};
 use crate::algebra::{Expr, View};
 use hodograph_model::arithmetic::Function;
+use hodograph_model::diagnostics::codes;
 use hodograph_model::model::mechanism::{DefinitionId, DefinitionValue, Mechanism, Scalar, Vector};
 use hodograph_program::program::graph::Input;
+
+/// Exponents grow no larger than this: powers of powers get names.
+const GREATEST_EXPONENT: u32 = 10_000;
 
 /// Definitions evaluated so far.
 pub struct Definitions {
@@ -95,9 +99,39 @@ impl Kinematics<'_> {
     }
 
     fn divide(&mut self, a: &Expr, b: Expr) -> Expr {
+        let Some(b) = self.divisor(b) else { return Expr::zero() };
         let b = self.z.name(b);
         self.guard(&b, format!("a divisor vanishes in {}", self.place));
         a.div(&b)
+    }
+
+    /// What is not 0 as it stands; nothing where it is, which is a mistake of the model.
+    fn divisor(&mut self, b: Expr) -> Option<Expr> {
+        if !b.is_zero() {
+            return Some(b);
+        }
+        let message = format!("something is divided by 0 in {}", self.place);
+        let help = "the terms of the divisor cancel: simplify it by hand".to_owned();
+        let span = Default::default();
+        self.mistake.get_or_insert(DeriveError { code: codes::ZERO_DIVISOR, span, message, help });
+        None
+    }
+
+    /// The base of a power, with a name where the exponents that it has already would grow out of bounds.
+    fn base(&mut self, base: Expr, n: i32) -> Expr {
+        let greatest = |factors: &[Expr]| {
+            let exponent = |factor: &Expr| match factor.view() {
+                View::Power(_, n) => n.unsigned_abs(),
+                _ => 1,
+            };
+            factors.iter().map(exponent).max().unwrap_or(1)
+        };
+        let exponent = match base.view() {
+            View::Power(_, n) => n.unsigned_abs(),
+            View::Product(factors) => greatest(&factors),
+            _ => 1,
+        };
+        if exponent.saturating_mul(n.unsigned_abs()) > GREATEST_EXPONENT { self.z.name(base) } else { base }
     }
 
     /// `base^exponent`: by multiplication for integers, with a root for halves, else through exp and log.
@@ -106,7 +140,9 @@ impl Kinematics<'_> {
             let whole =
                 |n: &hodograph_model::number::Number| n.to_integer().and_then(|n| i32::try_from(n).ok());
             if let Some(n) = whole(&number) {
+                let base = self.base(base, n);
                 if n < 0 {
+                    let Some(base) = self.divisor(base) else { return Expr::zero() };
                     let base = self.z.name(base);
                     self.guard(&base, format!("a divisor vanishes in {}", self.place));
                     return base.pow(n);
@@ -116,6 +152,10 @@ impl Kinematics<'_> {
             let twice = hodograph_model::number::Number(&number.0 * num_bigint::BigInt::from(2));
             if let Some(n) = whole(&twice) {
                 let root = self.z.call(Function::Sqrt, vec![base]);
+                if n < 0 && self.divisor(root.clone()).is_none() {
+                    return Expr::zero();
+                }
+                let root = self.base(root, n);
                 if n < 0 {
                     self.guard(&root, format!("a divisor vanishes in {}", self.place));
                 }

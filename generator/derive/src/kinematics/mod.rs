@@ -136,6 +136,8 @@ pub struct Kinematics<'m> {
     pub frames: Vec<FrameMotion>,
     /// per point, once the rates are determined
     pub points: Vec<PointMotion>,
+    /// a mistake that was met where a value was computed
+    pub mistake: Option<DeriveError>,
     /// dependent speeds as forms in independent ones: slot -> form
     pub dependent: BTreeMap<usize, LinearScalar>,
     /// derivatives of the dependent speeds while those of the independent ones are 0
@@ -194,6 +196,7 @@ impl<'m> Kinematics<'m> {
             time: Direction::new([(time, Expr::one())]),
             frames: Vec::new(),
             points: Vec::new(),
+            mistake: None,
             dependent: BTreeMap::new(),
             dependent_bias: BTreeMap::new(),
             guards: Vec::new(),

@@ -6,10 +6,12 @@ use super::states::at_rest;
 use crate::diagnostics::{Code, Diagnostic, Label, codes};
 use crate::model::Readable;
 use crate::model::mechanism::{Body, BodyId, Mechanism, Scalar};
+use crate::numeric::views::{dot3, sub3, values as components};
 use crate::numeric::{self, Evaluator, Level, State};
+use hodograph_arithmetic::POSSIBLE_INERTIA;
 
-/// Inertias may miss what is possible by this much, relative to their size.
-const POSSIBLE: f64 = 1e-9;
+/// What rounding can leave of a difference beside its terms.
+const ROUNDING: f64 = 1e-13;
 
 /// What a body cannot have with some values of the parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,14 +49,15 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
     };
     let trace = i[0][0] + i[1][1] + i[2][2];
     let size = i.iter().flatten().fold(0.0_f64, |s, c| s.max(c.abs()));
+    let possible = POSSIBLE_INERTIA * size + ROUNDING * moved(values, body).unwrap_or(0.0);
     // second moments of mass: tr(I)/2 - I must not be negative along any direction; that implies I is not
     // either
     let mut moments = i.map(|row| row.map(|c| -c));
     (0..3).for_each(|k| moments[k][k] += 0.5 * trace);
-    if !i.iter().flatten().all(|c| c.is_finite()) || least_eigenvalue(&moments) >= -POSSIBLE * size {
+    if !i.iter().flatten().all(|c| c.is_finite()) || least_eigenvalue(&moments) >= -possible {
         return None;
     }
-    let why = if least_eigenvalue(&i) < -POSSIBLE * size {
+    let why = if least_eigenvalue(&i) < -possible {
         "a moment of inertia about some axis is negative"
     } else {
         "the largest principal moment exceeds the sum of the two others"
@@ -63,6 +66,14 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
         codes::INERTIA,
         if inertia.about.is_some() { format!("about the mass centre, {why}") } else { why.to_owned() },
     ))
+}
+
+/// What an inertia about another point has more than that about the mass centre.
+fn moved(values: &Evaluator<'_>, body: &Body) -> Option<f64> {
+    let point = body.inertia.as_ref()?.about?;
+    let mass = values.scalar(&body.mass, Level::Motion).ok()?.re;
+    let arm = sub3(components(values.position(body.centre).ok()?), components(values.position(point).ok()?));
+    Some(mass * dot3(arm, arm))
 }
 
 /// The same as messages about a model with its own values. `readable` says which bodies could be read,

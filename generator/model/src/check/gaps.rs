@@ -1,6 +1,7 @@
 //! Checks gaps: the rate of a gap must be the normal velocity of its contact, it must change its sign
 //! where the contact closes, and no gap may be negative at the initial values.
 
+use super::exact::constants;
 use super::states::{Seen, at_rest, stated};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
@@ -85,6 +86,14 @@ fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) ->
         return None;
     }
     let name = &contact.name;
+    if last.iter().all(|fit| *fit == Fit::Constant) && constants::never_changes(m, gap) {
+        let message =
+            format!("the gap of `{name}` is constant, although the bodies approach along its normal");
+        let help = "it is the distance along the normal of the point that strikes, such as `dot(position(P), N.y)`; a contact without one \
+                    has `gap: none`";
+        let error = Diagnostic::new(codes::CONTACT, contact.gap_span, message);
+        return Some(error.related(contact.normal_span, "this is the normal").help(help));
+    }
     let (message, help) = match last[0] {
         Fit::Opposite => (
             format!("the gap of `{name}` grows while the bodies approach along its normal"),

@@ -4,6 +4,7 @@
 mod bodies;
 mod body_points;
 mod by_values;
+mod centres;
 mod configuration;
 mod contacts;
 mod counts;

@@ -4,8 +4,8 @@
 use super::exact::{divisors, enclosures};
 use super::states::Seen;
 use super::{
-    bodies, body_points, by_values, configuration, contacts, coupled, empty_equations, finite, gaps, hollows,
-    independent_constraints, loads, loops, motion, shapes, states, unit_vectors, vector_constraints,
+    bodies, body_points, by_values, centres, configuration, contacts, coupled, empty_equations, finite, gaps,
+    hollows, independent_constraints, loads, loops, motion, shapes, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
@@ -112,6 +112,12 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
         found if found.is_empty() || not_finite(m, &failures, &far).is_some() => (seen, failures),
         found => (found, Vec::new()),
     };
+    // or soon after the start only
+    let early = Closed::of(m, if seen.is_empty() { states::early(m) } else { Vec::new() });
+    let (seen, failures) = match early.seen(m).0 {
+        found if found.is_empty() => (seen, failures),
+        found => (found, Vec::new()),
+    };
     if seen.is_empty() {
         out.extend(undetermined(m).or_else(|| nowhere(m, &failures, name)));
         out.extend(unit_vectors::normals(m, &alone));
@@ -129,7 +135,9 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
     }
     let views: Vec<&Views<'_>> = seen.iter().map(|seen| &seen.views).collect();
     if finite::never_finite(m, &views, &[]).is_some() {
-        let far = Closed::of(m, states::far(m));
+        let (far, early) = (Closed::of(m, states::far(m)), Closed::of(m, states::early(m)));
+        let early = early.views(m);
+        let views: Vec<&Views<'_>> = views.iter().copied().chain(&early).collect();
         if let Some(found) = finite::never_finite(m, &views, &far.views(m)) {
             out.push(found);
             return out;
@@ -146,6 +154,8 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
         out.extend(motion::inertia_of_speeds(m, &seen));
     }
     out.extend(body_points::strangers(m, &seen));
+    let of_centres = centres::centres(m, &seen, &out);
+    out.extend(of_centres);
     // where inertias turn in their frames, a wrong angle is the cause mostly, which is told there
     if !out.iter().any(|found| found.code == codes::INERTIA && sound) {
         out.extend(of_the_motion(m, &seen));
@@ -211,7 +221,9 @@ impl Closed {
 
 /// What is finite neither at the states that failed nor at others.
 fn not_finite(m: &Mechanism, failures: &[Failed], far: &Closed) -> Option<Diagnostic> {
-    let near: Vec<Views<'_>> = failures.iter().filter_map(|(_, state, _)| Views::at(m, state).ok()).collect();
+    let early = Closed::of(m, states::early(m));
+    let near = failures.iter().filter_map(|(_, state, _)| Views::at(m, state).ok());
+    let near: Vec<Views<'_>> = near.chain(early.views(m)).collect();
     finite::never_finite(m, &near.iter().collect::<Vec<_>>(), &far.views(m))
 }
 

@@ -15,6 +15,9 @@ pub const NEAR: usize = 2;
 const FARTHEST: f64 = 3.2;
 const FAR: u64 = 16;
 
+/// Times just after the start, s, for the arbitrary states.
+const EARLY: [f64; 5] = [0.1, 0.01, 1e-4, 1e-6, 0.0];
+
 /// What is seen at a state.
 pub struct Seen<'m> {
     /// its number among the arbitrary states: the last is the nearest to the initial values
@@ -35,6 +38,12 @@ pub fn arbitrary(m: &Mechanism) -> Vec<State> {
 /// States all over the ranges of the coordinates.
 pub fn far(m: &Mechanism) -> Vec<State> {
     (0..FAR).map(|i| state(m, FARTHEST, DISTANCES.len() as u64 + i)).collect()
+}
+
+/// States as the arbitrary ones, but soon after the start, the last at the start: something may end early.
+pub fn early(m: &Mechanism) -> Vec<State> {
+    let at = |(state, time): (State, f64)| State { time, ..state };
+    arbitrary(m).into_iter().zip(EARLY).map(at).collect()
 }
 
 fn state(m: &Mechanism, distance: f64, seed: u64) -> State {

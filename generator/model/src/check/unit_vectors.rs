@@ -85,14 +85,15 @@ pub(super) fn length_shown(length: f64) -> String {
     if (length - 1.0).abs() < 1e-3 { format!("{length:.12}") } else { number(length) }
 }
 
-/// Initial values of quaternions: all left out (or 0) is the identity.
+/// Initial values of quaternions: the first left out and the others too, or 0, is the identity.
 fn quaternions(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for (_, frame) in m.frames.iter().enumerate().filter(|(i, _)| readable.frames[*i]) {
         let Orientation::Quaternion(ids) = &frame.orientation else { continue };
         let values = ids.map(|id| m.coordinates[id.0].value.unwrap_or(0.0));
         let norm = values.iter().map(|e| e * e).sum::<f64>().sqrt();
-        if norm > 0.0 && (norm - 1.0).abs() > UNIT_QUATERNION {
+        let stated = norm > 0.0 || m.coordinates[ids[0].0].value.is_some();
+        if stated && (norm - 1.0).abs() > UNIT_QUATERNION {
             let message = format!(
                 "the initial values of the quaternion of `{}` have the norm {}, not 1",
                 frame.name,

@@ -59,7 +59,7 @@ pub(super) const TABLE: &[Explanation] = &[
         code: POINT,
         text: "A position is another point plus a vector. Points are not added or subtracted; the vector \
             from Q to P is `position(P, Q)`. In `P of B = Q + ..` Q must move with B: it is the mass centre \
-            of B, a hinge, or another point of B.",
+            of B, a hinge, or another point of B. The velocity of a mass centre must be the rate of its position.",
         wrong: Some("points { G = -l/2*B.y; P = O - l*B.y; }"),
         right: Some("points { G = O - l/2*B.y; P = O - l*B.y; }"),
     },
@@ -309,13 +309,14 @@ pub(super) const TABLE: &[Explanation] = &[
         text: "What is struck is a point (`against: Q` or `against: Q of Body`), the material point of a \
             body that coincides with P (`against: Body`), a point of a frame that carries no body \
             (`against: Frame`, turning about O, or `against: Frame about Q`), or a surface with a velocity \
-            (`against: velocity v`). Left out, it is a point fixed in N. Two points of one body never meet.",
+            (`against: velocity v`). Left out, it is a point fixed in N. Two points of one body never meet. A gap that is the same in all \
+            states is that of no contact.",
         wrong: Some("contacts { tip { point: P of Rod, against: N, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },
     Explanation {
         code: SURFACE,
-        text: "The surface of a contact holds its friction and restitution: `mu`, not negative, `e`, from 0 \
+        text: "The surface of a contact holds its friction and restitution: `mu`, not negative and at most 1e100, `e`, from 0 \
             to 1, and `law`, one of newton, poisson and stronge, each a constant. Motions also read `mu_static`, \
             not less than mu, `mu_impact`, `sliding: stribeck(SPEED)`, which needs `mu_static`, and \
             `restitution`, one of threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT) and \

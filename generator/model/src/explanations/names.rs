@@ -13,14 +13,15 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: DUPLICATE_NAME,
-        text: "All names of a model share one name space: a point and a parameter cannot have the same name.",
+        text: "All names of a model share one name space: a point and a parameter cannot have the same name, nor the \
+            index of a `for` and a coordinate.",
         wrong: Some("coordinates { q1: rad, l: m }"),
         right: Some("coordinates { q1: rad }"),
     },
     Explanation {
         code: RESERVED_NAME,
-        text: "`N`, `O`, `time` and `pi` are predefined, and keywords of Rust cannot name anything in the \
-            generated code.",
+        text: "`N`, `O`, `time` and `pi` are predefined, in parts, as counts and as indices too, and keywords of Rust \
+            cannot name anything in the generated code.",
         wrong: Some("frames { self = N.rotate(z, q1); B = self; }"),
         right: Some("frames { A = N.rotate(z, q1); B = A; }"),
     },

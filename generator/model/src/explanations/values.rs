@@ -40,7 +40,8 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: ZERO_DIVISOR,
-        text: "A divisor is the constant 0, or is zero at every state at which the model is checked.",
+        text: "A divisor is the constant 0, with rounding or without, as `sin(pi)` is, or is zero at every state at which \
+            the model is checked.",
         wrong: Some("points { G = O - l/(1 - 1)*B.y; P = O - l*B.y; }"),
         right: Some("points { G = O - l/(1 + 1)*B.y; P = O - l*B.y; }"),
     },

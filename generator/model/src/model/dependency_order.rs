@@ -48,6 +48,8 @@ pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> O
     let mut depths: HashMap<Item, usize> = HashMap::new();
     let mut out = Order { items: Vec::new(), cyclic: HashSet::new() };
     let mut done: HashSet<Item> = HashSet::new();
+    // one word about chains that are too long is enough
+    let mut too_deep = false;
     // a walk with its own stack: chains of definitions may be long
     for start in all {
         if done.contains(&start) {
@@ -62,7 +64,10 @@ pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> O
                 let deepest = references.iter().filter_map(|(r, _)| depths.get(r)).max().map_or(0, |d| d + 1);
                 depths.insert(item, deepest);
                 if deepest == MAX_CHAIN {
-                    diagnostics.push(graph.too_deep(item));
+                    if !too_deep {
+                        diagnostics.push(graph.too_deep(item));
+                    }
+                    too_deep = true;
                     out.cyclic.insert(item);
                 }
                 open.remove(&item);

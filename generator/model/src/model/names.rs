@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::hulls::Hulls;
 use super::pairs;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::parts;
 use crate::rust_names::{is_keyword, is_value, snake_case};
 use crate::span::Span;
 use crate::suggest;
@@ -140,14 +141,7 @@ impl Names {
                     .help("all names of a model share one name space: choose another name"),
                 );
             }
-            Some((first, None)) => diagnostics.push(
-                Diagnostic::new(
-                    codes::RESERVED_NAME,
-                    name.span,
-                    format!("`{}` is predefined: {}", name.text, given(*first)),
-                )
-                .help("choose another name"),
-            ),
+            Some((_, None)) => diagnostics.extend(parts::predefined(name)),
         }
     }
 
@@ -240,15 +234,6 @@ impl Names {
     pub fn nearest(&self, name: &str, fits: impl Fn(Symbol) -> bool) -> Option<&str> {
         let candidates = self.order.iter().filter(|(_, symbol)| fits(*symbol)).map(|(text, _)| text.as_str());
         suggest::nearest(name, candidates)
-    }
-}
-
-fn given(symbol: Symbol) -> &'static str {
-    match symbol {
-        Symbol::Frame(_) => "the inertial frame",
-        Symbol::Point(_) => "a point fixed in the inertial frame",
-        Symbol::Time => "the time, in seconds",
-        _ => "3.14159..",
     }
 }
 

@@ -7,6 +7,7 @@
 //! counted in that unit.
 
 mod assembly;
+mod balance;
 mod dynamics;
 mod evaluator;
 pub mod hyper_dual;

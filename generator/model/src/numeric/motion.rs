@@ -1,9 +1,10 @@
 //! Solves kinematical equations and constraints numerically: rates of coordinates and dependent speeds as
 //! affine functions of the independent speeds.
 
+use super::balance::solve_in_any_units;
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;
-use super::linear_system::{rank, solve};
+use super::linear_system::rank;
 use super::state::{Failure, State};
 use crate::model::mechanism::*;
 use crate::span::Span;
@@ -136,8 +137,8 @@ impl<'m> Instant<'m> {
         let rows = rows.into_iter().map(|row| negate_from(row, q)).collect();
         let quantities = self.m.coordinates.iter().chain(&self.m.speeds);
         let sizes: Vec<f64> = quantities.map(|quantity| quantity.factor).collect();
-        let solved =
-            solve(rows, q, &sizes).map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
+        let solved = solve_in_any_units(rows, q, &sizes)
+            .map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::MotionInconsistent(spans[solved.contradiction.0], solved.contradiction.1));
         }
@@ -190,7 +191,7 @@ impl<'m> Instant<'m> {
         let rows: Vec<Vec<HyperDual>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
         let (own, others) = self.m.speeds.split_at(independent);
         let sizes: Vec<f64> = others.iter().chain(own).map(|speed| speed.factor).collect();
-        let solved = solve(rows, dependent, &sizes)
+        let solved = solve_in_any_units(rows, dependent, &sizes)
             .map_err(|e| Failure::SpeedsUndetermined(SpeedId(independent + e.unknown)))?;
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::ConstraintsInconsistent(spans[solved.contradiction.0]));

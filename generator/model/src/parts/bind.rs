@@ -87,6 +87,8 @@ impl Resolver<'_, '_, '_> {
                 let message = format!("the mechanism has no {what} `{}` to share", name.text);
                 let help = format!("declare it in the section `{}` of the mechanism", shared.section.word());
                 self.instances.report(instance, codes::OUTER_NAME, name.span, message, &help);
+                // so that nothing more is said of it
+                self.bindings[instance].insert(name.text.clone(), Bound::Name(name.text.clone(), kind));
                 continue;
             };
             self.agreement(instance, shared, place);

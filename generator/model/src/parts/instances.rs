@@ -6,7 +6,8 @@ use std::rc::Rc;
 
 use super::catalogue::{Catalogue, Families};
 use super::count::{Numbers, evaluate};
-use super::outline::{ArgumentKind, Block, For, Item, Part, Use};
+use super::given;
+use super::outline::{ArgumentKind, Block, For, Item, Use, names_of_arguments};
 use super::places::Places;
 use super::roles::Kind;
 use super::template::{Shared, Template, template};
@@ -103,6 +104,8 @@ pub struct Instances<'a, 'p> {
     pub families: Families,
     root: &'a Block,
     templates: HashMap<*const Block, Rc<Template>>,
+    /// the indices of repetitions, each with the instance in which it is
+    repeated: Vec<(usize, &'a Name)>,
     /// places of which something was said that is the same for all instances
     said: HashSet<Span>,
     /// instances and turns of repetitions so far
@@ -145,6 +148,7 @@ impl<'a, 'p> Instances<'a, 'p> {
             families: catalogue.families(block, 0),
             root: block,
             templates: HashMap::new(),
+            repeated: Vec::new(),
             said: HashSet::new(),
             turns: 0,
             length: 0,
@@ -152,7 +156,33 @@ impl<'a, 'p> Instances<'a, 'p> {
             full: false,
         };
         instances.block(0, block, numbers, None, 0);
+        instances.shadowing_indices();
         instances
+    }
+
+    /// Says so where an index hides something that has its name.
+    fn shadowing_indices(&mut self) {
+        for (instance, index) in std::mem::take(&mut self.repeated) {
+            let key = (index.text.clone(), Vec::new());
+            let member = self.list[instance].members.get(&key).map(Member::span);
+            let part = self.list[instance].part.map(|part| self.catalogue.parts[part].part);
+            // a count that is given may be the index of what it counts
+            let arguments = part.into_iter().flat_map(|part| &part.arguments);
+            let arguments = arguments.filter(|argument| !matches!(argument.kind, ArgumentKind::Count { .. }));
+            let argument = arguments.map(|argument| &argument.name).find(|name| name.text == index.text);
+            let shared = self.runs.iter().filter(|run| run.instance == instance);
+            let shared = shared.flat_map(|run| &run.template.shared).map(|shared| &shared.name);
+            let shared = shared.into_iter().find(|name| name.text == index.text);
+            let Some(place) = member.or(argument.or(shared).map(|name| name.span)) else { continue };
+            // in the turns of the repetition this is said where it is declared
+            if self.said.contains(&place) {
+                continue;
+            }
+            let message = format!("the name `{}` is declared twice", index.text);
+            let error = Diagnostic::new(codes::DUPLICATE_NAME, index.span, message);
+            let error = error.related(place, "the other is here").help("choose another name for the index");
+            self.report_once(instance, error);
+        }
     }
 
     /// The file in which the text of an instance stands.
@@ -330,6 +360,11 @@ impl<'a, 'p> Instances<'a, 'p> {
                 self.report_once(instance, error.help("choose another name"));
                 continue;
             }
+            // names of the mechanism are looked at where all are collected
+            if let Some(error) = given::predefined(&name).filter(|_| instance > 0 && indices.is_empty()) {
+                self.report_once(instance, error);
+                continue;
+            }
             let text = joined(&self.list[instance].text, &name.text, &indices);
             let shown = dotted(&self.list[instance].shown, &name.text, &indices);
             let span = name.span;
@@ -394,6 +429,10 @@ impl<'a, 'p> Instances<'a, 'p> {
             self.full = true;
             return;
         }
+        if !self.repeated.iter().any(|known| known.0 == instance && std::ptr::eq(known.1, &repeated.variable))
+        {
+            self.repeated.push((instance, &repeated.variable));
+        }
         for index in from..=to {
             self.turns += 1;
             let mut numbers = numbers.clone();
@@ -412,17 +451,6 @@ pub fn own_quantities(template: &Template) -> impl Iterator<Item = &str> {
         |kind: Kind| matches!(kind, Kind::Parameter | Kind::Input | Kind::Coordinate | Kind::Speed);
     let plain = template.declared().filter(move |(word, kind)| word.path.is_none() && quantity(*kind));
     plain.map(|(word, _)| word.token.text.as_str())
-}
-
-/// The names that the arguments of a part give.
-pub fn names_of_arguments(part: &Part) -> impl Iterator<Item = &Name> {
-    part.arguments.iter().flat_map(|argument| {
-        let of = match &argument.kind {
-            ArgumentKind::Point { of } => of.as_ref(),
-            _ => None,
-        };
-        std::iter::once(&argument.name).chain(of)
-    })
 }
 
 /// A name of the expanded model: `front_left_knee`, `link_3_tip`.

@@ -7,6 +7,7 @@
 //! catalogue  the parts that each file sees
 //! template   sections -> words, each with what it is: a name that is declared, a reference, or neither (roles)
 //! instances  each use and each turn of a repetition, and the names that it declares
+//! given      names that are predefined, and cannot be declared
 //! uses       whether a use can be, and what it gives
 //! resolve    what a name of an instance means in the mechanism
 //! bind       what each instance is given
@@ -23,6 +24,7 @@ mod bind;
 mod catalogue;
 mod count;
 mod emit;
+mod given;
 mod imports;
 mod instances;
 mod messages;
@@ -48,6 +50,7 @@ use count::Numbers;
 use instances::Instances;
 use resolve::Resolver;
 
+pub use given::predefined;
 pub use imports::{Files, Imported, NoFiles};
 pub use outline::WORDS;
 pub use places::{Place, Places, Site};
@@ -89,6 +92,7 @@ pub fn expand(tokens: &[Token], files: &dyn Files, most: usize) -> Option<Expans
     let mut syntax = std::mem::take(&mut mistakes);
     let read = imports::read_all(root, files, most - tokens.len(), &mut places, &mut mistakes);
     let catalogue = Catalogue::new(&read, &mut mistakes);
+    mistakes.extend(given::mistakes(&read[0].outline, &catalogue));
     let numbers = counts(&read[0].outline.counts, &mut mistakes);
     let block = &read[0].outline.block;
     let mut instances = Instances::new(block, numbers, &catalogue, &mut places, most);

@@ -216,3 +216,14 @@ pub struct For {
     /// where the range stands
     pub span: Span,
 }
+
+/// The names that the arguments of a part give.
+pub fn names_of_arguments(part: &Part) -> impl Iterator<Item = &Name> {
+    part.arguments.iter().flat_map(|argument| {
+        let of = match &argument.kind {
+            ArgumentKind::Point { of } => of.as_ref(),
+            _ => None,
+        };
+        std::iter::once(&argument.name).chain(of)
+    })
+}

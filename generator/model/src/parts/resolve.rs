@@ -4,7 +4,8 @@
 use std::collections::HashMap;
 
 use super::count::{Numbers, number};
-use super::instances::{Instances, Member, dotted, names_of_arguments};
+use super::instances::{Instances, Member, dotted};
+use super::outline::names_of_arguments;
 use super::places::Place;
 use super::roles::{Kind, Role};
 use super::template::{Path, Segment, Word};

@@ -43,6 +43,10 @@ impl Parser<'_> {
             let words = [codes::BAD_TOKEN, codes::BAD_NUMBER];
             let mut said = self.diagnostics.split_off(before);
             said.truncate(1);
+            // all of it may stand in a comment that is not closed
+            if self.diagnostics.iter().any(|d| d.code == codes::UNBALANCED) {
+                said.clear();
+            }
             if !said.is_empty() {
                 self.diagnostics.retain(|d| !words.contains(&d.code));
             }

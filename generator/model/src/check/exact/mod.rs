@@ -9,6 +9,7 @@
 //!
 //! Theory: docs/theory.md, section 16.6.
 
+pub mod constants;
 pub mod divisors;
 pub mod enclosures;
 pub mod nodes;

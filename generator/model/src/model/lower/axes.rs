@@ -74,6 +74,10 @@ impl Lowering<'_> {
         }
         let frame = self.frame_with_axes(base);
         let Some(axis) = axis_named(&field.text) else {
+            // what is no frame has no axes either
+            if frame.is_none() {
+                return Typed::poison(span);
+            }
             let error = Diagnostic::new(
                 codes::UNKNOWN_NAME,
                 field.span,

@@ -87,13 +87,7 @@ impl Lowering<'_> {
                 continue;
             };
             if let Some(first) = found[i] {
-                let error = Diagnostic::new(
-                    codes::FIELD,
-                    field.name.span,
-                    format!("`{}` is given twice", field.name.text),
-                )
-                .related(first.name.span, "first here");
-                self.report(error);
+                self.given_twice(field, first);
             } else {
                 found[i] = Some(field);
             }
@@ -118,6 +112,13 @@ impl Lowering<'_> {
             self.report(error.fix(Place::IntoBraces(owner.span), added));
         }
         found
+    }
+
+    /// Says that a record has a field that it has already.
+    pub(super) fn given_twice(&mut self, field: &Field, first: &Field) {
+        let message = format!("`{}` is given twice", field.name.text);
+        let error = Diagnostic::new(codes::FIELD, field.name.span, message);
+        self.report(error.related(first.name.span, "first here"));
     }
 
     /// A field as it could be written, with names of the model.

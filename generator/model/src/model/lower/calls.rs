@@ -234,6 +234,11 @@ impl Lowering<'_> {
             self.report(error.help("it is sin/cos, and this cosine is 0"));
             return Typed::poison(span);
         }
+        if function == Function::Log && !typed[0].is_zero() && self.vanishes(&typed[0]) {
+            let error = Diagnostic::new(codes::NUMBER_RANGE, span, "the logarithm of 0 is not a number");
+            self.report(error.related(typed[0].span, "this is 0, but for rounding"));
+            return Typed::poison(span);
+        }
         let value = Scalar::Call(function, scalars);
         Typed { constant, provenance, ..Typed::scalar(value, dimension, traits, span) }
     }

@@ -25,6 +25,7 @@ mod sums;
 mod surfaces;
 mod table;
 mod turning;
+mod vanishing;
 
 use std::collections::HashSet;
 

@@ -164,9 +164,9 @@ impl Lowering<'_> {
                 continue;
             }
             let typed = self.expression(factor);
-            if typed.is_zero() && divides {
-                let error =
-                    Diagnostic::new(codes::ZERO_DIVISOR, typed.span, "division by zero").label("this is 0");
+            if divides && self.vanishes(&typed) {
+                let label = if typed.is_zero() { "this is 0" } else { "this is 0, but for rounding" };
+                let error = Diagnostic::new(codes::ZERO_DIVISOR, typed.span, "division by zero").label(label);
                 self.report(error);
                 product.wrong = true;
             }
@@ -209,9 +209,10 @@ impl Lowering<'_> {
             );
             return Typed::poison(span);
         }
-        if base.is_zero() && exponent.constant.is_some_and(|e| e < 0.0) {
+        if exponent.constant.is_some_and(|e| e < 0.0) && self.vanishes(&base) {
             let error = Diagnostic::new(codes::ZERO_DIVISOR, span, "a negative power of zero");
-            self.report(error.related(base.span, "this is 0"));
+            let label = if base.is_zero() { "this is 0" } else { "this is 0, but for rounding" };
+            self.report(error.related(base.span, label));
             return Typed::poison(span);
         }
         let provenance = small.map_or(Provenance::none(), |exponent| base.provenance.power(exponent));

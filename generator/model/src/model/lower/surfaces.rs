@@ -49,7 +49,7 @@ impl Lowering<'_> {
         let known = words::SURFACE;
         let [mu, e, law, mu_static, mu_impact, sliding, restitution, rolling, spinning] =
             self.record("a surface", owner, fields, known, &[]);
-        if let Some(value) = mu.and_then(|mu| self.coefficient(mu, "a coefficient of friction")) {
+        if let Some(value) = mu.and_then(|mu| self.friction(mu, "a coefficient of friction")) {
             surface.mu = value;
         }
         if let Some((value, field)) =
@@ -65,9 +65,8 @@ impl Lowering<'_> {
         if let Some(law) = law {
             surface.law = self.law(law).unwrap_or(surface.law);
         }
-        more.mu_static = mu_static.and_then(|mu| self.coefficient(mu, "a coefficient of static friction"));
-        more.mu_impact =
-            mu_impact.and_then(|mu| self.coefficient(mu, "a coefficient of friction in impacts"));
+        more.mu_static = mu_static.and_then(|mu| self.friction(mu, "a coefficient of static friction"));
+        more.mu_impact = mu_impact.and_then(|mu| self.friction(mu, "a coefficient of friction in impacts"));
         if let (Some(value), Some(field)) = (more.mu_static, mu_static)
             && value < surface.mu
         {
@@ -154,6 +153,17 @@ impl Lowering<'_> {
         if value < 0.0 {
             let message = format!("{what} is not negative");
             self.report(Diagnostic::new(codes::SURFACE, field.value.span, message));
+        }
+        Some(value)
+    }
+
+    /// A coefficient of friction.
+    fn friction(&mut self, field: &Field, what: &str) -> Option<f64> {
+        let value = self.coefficient(field, what)?;
+        if value > Surface::MOST_FRICTION {
+            let message = format!("{what} is at most {:e}", Surface::MOST_FRICTION);
+            let error = Diagnostic::new(codes::SURFACE, field.value.span, message);
+            self.report(error.help("1e6 holds as well"));
         }
         Some(value)
     }

@@ -454,6 +454,8 @@ pub struct Surface {
 impl Surface {
     /// What is left out of a surface is this: without friction, without rebound.
     pub const PLAIN: Surface = Surface { mu: 0.0, e: 0.0, law: "poisson" };
+    /// The greatest coefficient of friction that a model may state: motions take squares of it.
+    pub const MOST_FRICTION: f64 = 1e100;
 }
 
 /// What a surface does beyond one coefficient of friction and one of restitution. Simulations read it.

@@ -42,7 +42,11 @@ impl Lowering<'_> {
             let error = Diagnostic::new(codes::FIELD, field.name.span, message);
             self.report(error.help("two shapes have a `surface` besides: friction and restitution"));
         }
-        let surface = fields.iter().find(|field| field.name.text == "surface");
+        let mut surfaces = fields.iter().filter(|field| field.name.text == "surface");
+        let surface = surfaces.next();
+        for (again, first) in surfaces.zip(surface.into_iter().cycle()) {
+            self.given_twice(again, first);
+        }
         let (surface, law) = surface.map(|field| self.surface(field)).unzip();
         let law = law.unwrap_or_default();
         let turning = match &touches {
