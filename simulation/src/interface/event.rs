@@ -80,7 +80,7 @@ pub enum EventKind {
         /// whether other modes were possible
         selection: Selection,
     },
-    /// Everything is at rest.
+    /// Everything is at rest, until an event or a load that depends on time sets it in motion.
     Rest,
     /// The motion ends: the coordinates no longer determine the contact point (a disc that lies flat). The
     /// impact of a whole face would follow.
