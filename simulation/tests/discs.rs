@@ -1,6 +1,6 @@
 //! Discs that fall flat: the motion of the lowest point ends where that is no longer one point.
 
-use crate::many::{Start, follow, model, surface};
+use crate::many::{Start, follow, model, numeric, surface};
 use hodograph::Law;
 use hodograph_simulation::{ErrorKind, EventKind, Simulation};
 
@@ -18,6 +18,59 @@ fn precessing(angle: f64, share: f64) -> Start {
     start.set(&disc, "z", RADIUS * angle.sin());
     start.set(&disc, "wy", share * (4.0 * G * angle.sin() / RADIUS).sqrt());
     start
+}
+
+/// Rims of shapes that fall flat: the lowest point of a rim is known to all digits until it is no longer one point.
+#[test]
+fn rims_of_shapes_fall_flat() {
+    let (radius, angle) = (0.2_f64, 0.3_f64);
+    let inclined = radius * angle.sin();
+    for (shape, height) in [
+        ("disc: r", inclined),
+        ("cylinder: [r, l]", inclined + 0.05 * angle.cos()),
+        ("torus: [r, h]", inclined + 0.02),
+        ("cone: [r, l]", inclined),
+    ] {
+        let mechanism = numeric(
+            &format!("rim-{}", &shape[..4]),
+            &format!(
+                "mechanism Rim;
+                parameters {{
+                    m: kg = 1, r: m = 0.2, l: m = 0.1, h: m = 0.02, J1: kg*m^2 = 0.012, J3: kg*m^2 = 0.02,
+                    g: m/s^2 = 9.81,
+                }}
+                coordinates {{ x: m, y: m, z: m, e0: 1 = 1, e1: 1, e2: 1, e3: 1 }}
+                speeds {{ vx: m/s, vy: m/s, vz: m/s, w1: rad/s, w2: rad/s, w3: rad/s }}
+                frames {{ B = N.quaternion(e0, e1, e2, e3); }}
+                angular_velocities {{ B = w1*B.x + w2*B.y + w3*B.z; }}
+                points {{ G = O + x*N.x + y*N.y + z*N.z; }}
+                velocities {{ G = vx*N.x + vy*N.y + vz*N.z; }}
+                bodies {{ Body {{ frame: B, centre: G, mass: m, inertia: [J1, J1, J3] }} }}
+                shapes {{ S {{ of: Body, {shape}, axis: B.z }}, L {{ plane: N.z }} }}
+                loads {{ gravity: -g*N.z; }}
+                kinematics {{ d(x)/dt = vx; d(y)/dt = vy; d(z)/dt = vz; }}
+                contacts {{ c {{ S on L }} }}"
+            ),
+        );
+        for mu in [0.0, 0.4] {
+            let (sin, cos) = (0.5 * angle).sin_cos();
+            let start = Start {
+                coordinates: vec![0.0, 0.0, height, cos, sin, 0.0, 0.0],
+                speeds: vec![0.0; 6],
+                inputs: Vec::new(),
+            };
+            let ends = [1e-12, 1e-9].map(|tolerance| {
+                let mut options = surface(mu, 0.0, Law::Newton);
+                (options.relative_tolerance, options.absolute_tolerance) = (tolerance, tolerance);
+                follow(&mechanism, &start, options, 1.0)
+            });
+            for end in &ends {
+                assert_eq!(end.outcome(), "singular", "{shape} {mu}: {:?} {:?}", end.error, end.names());
+            }
+            let [exact, near] = ends.map(|end| end.time);
+            assert!((exact - near).abs() < 1e-6, "{shape} {mu}: {exact} {near}");
+        }
+    }
 }
 
 /// Without spin the disc turns about its lowest point like a pendulum and falls flat with the energy of its

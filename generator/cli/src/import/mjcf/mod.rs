@@ -247,6 +247,22 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads an `<option>`.
+    fn options(&mut self, node: Node) {
+        self.attempt(node, |reader, element| {
+            if let Some(gravity) = element.numbers::<3>("gravity")? {
+                reader.forces.gravity = Vector3::from(gravity);
+            }
+            Ok(())
+        });
+        for part in node.children().filter(Node::is_element) {
+            match part.tag_name().name() {
+                "flag" => self.attempt(part, |reader, element| reader.forces.read_flags(element)),
+                _ => self.other(part),
+            }
+        }
+    }
+
     fn world(&mut self, node: Node, link: &mut Link) {
         let class = node.attribute("childclass").unwrap_or("main").to_owned();
         let mut body = Body {

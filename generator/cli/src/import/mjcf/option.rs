@@ -1,9 +1,7 @@
 //! `<option>`: gravity, and the flags that switch forces off.
 
 use nalgebra::Vector3;
-use roxmltree::Node;
 
-use super::Reader;
 use super::elements::Element;
 
 /// The forces that a file has, according to `<option>`.
@@ -53,31 +51,18 @@ impl Forces {
     pub fn equality(&self) -> bool {
         !self.off(&["equality", "constraint"])
     }
-}
 
-impl Reader<'_> {
-    /// Reads an `<option>`.
-    pub(super) fn options(&mut self, node: Node) {
-        self.attempt(node, |reader, element| {
-            if let Some(gravity) = element.numbers::<3>("gravity")? {
-                reader.forces.gravity = Vector3::from(gravity);
-            }
-            Ok(())
-        });
-        for part in node.children().filter(Node::is_element) {
-            match part.tag_name().name() {
-                "flag" => self.attempt(part, Reader::flags),
-                _ => self.other(part),
-            }
-        }
-    }
-
-    fn flags(&mut self, element: &Element) -> Result<(), String> {
+    /// Reads the flags of a `<flag>`.
+    ///
+    /// # Errors
+    ///
+    /// A flag is neither `enable` nor `disable`.
+    pub fn read_flags(&mut self, element: &Element) -> Result<(), String> {
         for flag in FLAGS {
             match element.text(flag) {
                 None => {}
-                Some("enable") => self.forces.off.retain(|other| *other != flag),
-                Some("disable") => self.forces.off.push(flag),
+                Some("enable") => self.off.retain(|other| *other != flag),
+                Some("disable") => self.off.push(flag),
                 Some(_) => return Err(element.wrong(&format!("`{flag}` is `enable` or `disable`"))),
             }
         }

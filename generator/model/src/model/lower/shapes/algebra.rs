@@ -107,6 +107,11 @@ pub fn dot(a: &Vector, b: &Vector) -> Scalar {
     Scalar::Dot(Box::new(a.clone()), Box::new(b.clone()))
 }
 
+/// A cross product.
+pub fn cross(a: &Vector, b: &Vector) -> Vector {
+    Vector::Cross(Box::new(a.clone()), Box::new(b.clone()))
+}
+
 /// The length of a vector.
 pub fn norm(a: &Vector) -> Scalar {
     Scalar::Norm(Box::new(a.clone()))

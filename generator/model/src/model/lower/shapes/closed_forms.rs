@@ -41,12 +41,14 @@ fn on_plane(shape: &Shape, plane: &Shape, at: Span) -> Vec<Touch> {
     let ball = |centre: Anchor, radius: &Scalar| {
         touch(centre, opposite(&scaled(radius.clone(), &normal)), radius.clone())
     };
-    // the lowest point of a circle of radius R about the axis a: along -m with m = n - (n.a) a
+    // the lowest point of a circle of radius R about the axis a: along -m with m = n - (n.a) a, which is a x (n x a); of a
+    // circle that lies almost flat the difference would lose its digits
     let rim = |centre: Anchor, radius: &Scalar, tube: Option<&Scalar>| {
         let a = axis_of(shape);
-        let m = total([normal.clone(), opposite(&scaled(dot(&normal, &a), &a))]);
-        let out = opposite(&scaled(radius.clone(), &unit(&m, at)));
-        let depth = product([radius.clone(), norm(&m)]);
+        let across = cross(&normal, &a);
+        let length = norm(&across);
+        let out = scaled(quotient(opposite_of(radius.clone()), length.clone(), at), &cross(&a, &across));
+        let depth = product([radius.clone(), length]);
         match tube {
             None => touch(centre, out, depth),
             Some(tube) => {
