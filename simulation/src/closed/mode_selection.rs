@@ -109,7 +109,7 @@ impl Question {
             (Some(found), Some(before)) => (found - before).norm(),
             _ => f64::INFINITY,
         };
-        if begin.iter().map(turned).fold(0.0, f64::max) <= EXACT {
+        if begin.iter().map(turned).all(|turned| turned <= EXACT) {
             for &(place, _) in &begin {
                 if let Some(direction) = directions[place] {
                     choice.decisions[place] = Decision::Slide(direction, true);

@@ -20,16 +20,15 @@ impl Transition<'_> {
     /// at the event the state may lie on either side of the jump, by rounding. Does nothing where the forces are continuous.
     pub(crate) fn go_past_a_jump(&mut self) -> Result<(), SimulationError> {
         let closed = self.closed();
-        let least =
-            |transition: &Self, time: f64, state: &[f64]| transition.least_margin(&closed, time, state);
-        if least(self, self.front.t, &self.front.y).is_none_or(|margin| margin <= CONTINUOUS) {
+        if self.least_margin(&closed, self.front.t, &self.front.y).is_none_or(|margin| margin <= CONTINUOUS) {
             return Ok(());
         }
         let rounding = f64::EPSILON * self.front.t.abs().max(self.front.scales.time);
         for trial in 0..TRIALS {
             let after = FIRST * LONGER.powi(trial) * rounding;
             let Some(step) = self.part(&closed, after) else { return Ok(()) };
-            if least(self, self.front.t + after, &step.end).is_some_and(|margin| margin < 0.0) {
+            let behind = self.least_margin(&closed, self.front.t + after, &step.end);
+            if behind.is_some_and(|margin| margin < 0.0) {
                 // Twice as far, so that the correction of the state does not lead back.
                 return self.part(&closed, 2.0 * after).map_or(Ok(()), |mut step| self.commit(&mut step));
             }
