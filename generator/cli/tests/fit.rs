@@ -124,6 +124,8 @@ fn errors_need_more_differences_than_values() {
     assert!(number(&two["errors"]["g"]) > 0.0, "{two}");
     let spread = fit(&drops(), &["--parameters", "g", "--bootstrap", "1"]);
     assert!(spread.told().0 == 2 && spread.stderr.contains("--bootstrap 1: one sample"), "{}", spread.stderr);
+    let lonely = fit(&drops(), &["--parameters", "g", "--seed", "3"]);
+    assert!(lonely.told().0 == 2 && lonely.stderr.contains("--seed is of --starts"), "{}", lonely.stderr);
 }
 
 /// What cannot be fitted is not offered, and differences whose squares are no numbers are an error.

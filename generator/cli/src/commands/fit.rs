@@ -67,9 +67,9 @@ pub struct Arguments {
     /// spread of the values
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     bootstrap: usize,
-    /// the seed of the starts and the bootstrap samples
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
-    seed: u64,
+    /// with --starts or --bootstrap: the seed of their draws [default: 1]
+    #[arg(long, value_name = "NUMBER")]
+    seed: Option<u64>,
     #[command(flatten)]
     motion: MotionArguments,
 }
@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 horizons: &arguments.horizons,
                 starts: arguments.starts,
                 bootstrap: arguments.bootstrap,
-                seed: arguments.seed,
+                seed: arguments.seed.unwrap_or(1),
             };
             let found = fit(&mechanism, &options, &task).map_err(stop)?;
             let mut answer = Answer::new(&found, &names, (&mechanism, &by), motions.trajectories.len());
@@ -167,6 +167,11 @@ impl Arguments {
             return Err(Stop::Call(
                 "--bootstrap 1: one sample has no spread: give two at least, as in --bootstrap 200"
                     .to_owned(),
+            ));
+        }
+        if self.seed.is_some() && self.starts <= 1 && self.bootstrap == 0 {
+            return Err(Stop::Call(
+                "--seed is of --starts and --bootstrap: give one of them, or leave it out".to_owned(),
             ));
         }
         Ok(())
