@@ -11,5 +11,6 @@ mod fits;
 mod hopper;
 mod orbits;
 mod samples;
+mod slip_begins;
 mod undefined;
 mod validation;
