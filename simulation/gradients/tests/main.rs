@@ -1,5 +1,6 @@
 //! Derivatives of motions, against closed forms and differences.
 
+mod bounces_end;
 mod closed_forms;
 mod common;
 mod contact_tasks;
