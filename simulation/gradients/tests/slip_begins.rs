@@ -114,8 +114,7 @@ fn a_corner_begins_to_slip() {
     assert!(compared.events > 10 && compared.state < 2e-8, "{compared:?}");
 }
 
-/// A corner of a box bounces, slips and sticks: the direction in which its slip ends settles thirty times as fast as slip
-/// falls.
+/// A corner of a box bounces, slips and sticks: the direction in which its slip ends settles much faster than slip falls.
 #[test]
 fn a_corner_stops_in_a_direction_that_settles_fast() {
     let mut task = Task {
