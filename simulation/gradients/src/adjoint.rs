@@ -3,12 +3,15 @@
 //!
 //! Theory: docs/theory.md, section 19.5.
 
+use std::cell::OnceCell;
+
 use hodograph::State;
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::stepper::{TransposedSystem, transpose};
 use hodograph_simulation::{Event, Options, SmoothPart};
 use nalgebra::DVector;
 
+use crate::collocation::{self, Collocation, Stretch};
 use crate::field::{Direction, Field};
 use crate::followed::Followed;
 use crate::modes::Mode;
@@ -167,10 +170,11 @@ impl<'m> Adjoint<'m> {
         let Followed { surfaces, sampling, .. } = &self.followed;
         let field = Field::new(self.mechanism, Vec::new(), surfaces.clone(), *sampling);
         let mut field = TransposedField::new(&field);
+        let collocation = OnceCell::new();
         let count = self.start.len() / (self.by.len() + 1);
         let mut weights = vec![0.0; count];
         for piece in self.pieces.iter().rev() {
-            let done = self.through(piece, output, &mut field, &mut weights);
+            let done = self.through(piece, output, (&mut field, &collocation), &mut weights);
             done.map_err(|(time, reason)| Undefined { time, contact: None, reason })?;
         }
         let (totals, k) = (field.totals(), self.by.len() + 1);
@@ -196,7 +200,7 @@ impl<'m> Adjoint<'m> {
         &self,
         piece: &Piece,
         output: Output<'_>,
-        field: &mut TransposedField<'_>,
+        (field, collocation): (&mut TransposedField<'_>, &OnceCell<Collocation<'m>>),
         weights: &mut [f64],
     ) -> Result<(), (f64, Reason)> {
         let still = weights.iter().all(|weight| *weight == 0.0);
@@ -222,9 +226,20 @@ impl<'m> Adjoint<'m> {
                 let mut rates = Rates { modes: field.field.modes(part), field, part, tapes: Vec::new() };
                 transpose(&mut rates, (*t, state), *h, weights).map_err(|why| (*t, why))
             }
-            Piece::Straight { part, time } => {
+            Piece::Collocation { part, stages } => {
                 let part = &self.followed.parts[*part];
-                let mut rates = Rates { modes: field.field.modes(part), field, part, tapes: Vec::new() };
+                let Followed { surfaces, sampling, tolerances, .. } = &self.followed;
+                let make = || Collocation::new(self.mechanism, surfaces.clone(), *sampling);
+                let collocation = collocation.get_or_init(make);
+                let stretch = Stretch::new(field.field, part, &field.field.modes(part), tolerances);
+                let done = stretch.and_then(|stretch| {
+                    collocation::transpose(collocation, field, &stretch, stages, weights)
+                });
+                done.map_err(|why| (stages.t, why))
+            }
+            Piece::Straight { part, time, modes } => {
+                let part = &self.followed.parts[*part];
+                let mut rates = Rates { modes: modes.clone(), field, part, tapes: Vec::new() };
                 let mut change = vec![0.0; weights.len()];
                 let found = rates.rates(0, part.start, &part.first, &mut change);
                 let of_rates: Vec<f64> = weights.iter().map(|weight| time * weight).collect();

@@ -172,14 +172,15 @@ pub enum Reason {
     StartInContact(By),
     /// A contact bounced at the start time.
     StartInCollision,
-    /// A sequence of small bounces was replaced by lasting contact.
+    /// The bounces of several contacts end together, and the gaps that are left have derivatives that matter: the order of the
+    /// bounces changes with the variables, the more so the lower they are.
     Settling,
     /// The modes changed by a cause whose time does not follow from the state.
     ModesChanged,
     /// The mechanism cannot be evaluated.
     State(hodograph::StateError),
     /// The motion that was integrated again differs from the original one by this much, relative to the
-    /// state.
+    /// state; infinite if its integration took too many steps.
     Inaccurate(f64),
 }
 
@@ -215,13 +216,19 @@ impl fmt::Display for Undefined {
                 write!(out, "a contact collides at the start: begin a little before the collision")
             }
             Reason::Settling => {
-                write!(out, "bounces below the tolerance were taken together as lasting contact")
+                write!(
+                    out,
+                    "the bounces of several contacts end together, and the order of the last ones depends on the variables without bound: ask for derivatives before this time, or begin from a start whose corners strike in a steadier order"
+                )
             }
             Reason::ModesChanged => write!(
                 out,
                 "the modes of the contacts changed by something whose time does not follow from the state"
             ),
             Reason::State(error) => error.fmt(out),
+            Reason::Inaccurate(by) if by.is_infinite() => {
+                write!(out, "the derivatives were not integrated in as many steps as are allowed")
+            }
             Reason::Inaccurate(by) => {
                 write!(out, "integrated anew the motion differs by {by:e} of its size: tighten the tolerance")
             }

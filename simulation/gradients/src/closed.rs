@@ -119,7 +119,7 @@ impl Closed {
 }
 
 /// The gaps of these contacts, and their derivatives by the coordinates (a row each).
-fn gaps(
+pub(crate) fn gaps(
     mechanism: &InterpretedMechanism,
     contacts: &[usize],
     state: &State<'_>,
@@ -139,7 +139,7 @@ fn gaps(
 }
 
 /// The least change of coordinates that changes the gaps by these amounts.
-fn least(by: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(crate) fn least(by: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let decomposed = by.clone().svd(true, true);
     let least = SINGULAR * decomposed.singular_values.max();
     decomposed.solve(change, least).ok()

@@ -11,6 +11,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 use crate::Reason;
 use crate::field::{At, ContactTerms, Field};
+use crate::held::{Held, settles};
 use crate::modes::{Mode, ModeKind};
 
 /// A gap closes without normal velocity if its rate is below this part of the terms of the normal velocity.
@@ -25,9 +26,9 @@ const TRANSVERSE_SLIP: f64 = 1e-5;
 /// where a mass cancels, the derivative and its terms are both rounding.
 const NOTHING: f64 = 1e-9;
 /// The computed speeds after a collision must agree with those of the motion to this part of the greatest.
-const SPEED_AGREEMENT: f64 = 1e-8;
+pub(crate) const SPEED_AGREEMENT: f64 = 1e-8;
 /// A change below this part of its terms counts as zero.
-const NEGLIGIBLE: f64 = 1e-12;
+pub(crate) const NEGLIGIBLE: f64 = 1e-12;
 
 /// The reason why there is no derivative, and its contact.
 pub(crate) type NonDifferentiable = (Option<usize>, Reason);
@@ -56,6 +57,8 @@ pub(crate) struct Junction {
     /// rates of the state before and after (n + p)
     pub rates_before: Vec<f64>,
     pub rates_after: Vec<f64>,
+    /// contacts that begin to last without a collision, or to stick
+    pub held: Option<Held>,
     /// the collisions, one after the other
     pub collisions: Vec<Struck>,
 }
@@ -86,7 +89,7 @@ impl Field<'_> {
     }
 
     /// The state at the end of a part, with its derivatives.
-    fn at_end<'a>(
+    pub fn at_end<'a>(
         &self,
         part: &'a SmoothPart,
         state: &'a [f64],
@@ -137,12 +140,24 @@ impl Field<'_> {
             }
         }
         if let Some(Guard::Slip(stopped)) = &part.ended_by {
-            self.check_stop(stopped, &self.at_end(part, &part.last, &there, &time), terms)?;
+            self.check_stop((part, modes), stopped, &self.at_end(part, &part.last, &there, &time), terms)?;
         }
         let (mut now, mut after) = (there.clone(), Vec::with_capacity(events.len()));
         let mut collisions = Vec::new();
-        self.check_impacts(part, next, events)?;
+        let mut held = self.check_impacts(part, next, events)?;
         let mut speeds = &part.last[self.n..];
+        if held.is_some() {
+            speeds = &next.first[self.n..];
+        } else if let (Some(Guard::Slip(stopped)), false) = (&part.ended_by, events.iter().any(strikes)) {
+            held = self.stopped(stopped, next);
+        }
+        if let Some(held) = &held {
+            let closes = match part.ended_by {
+                Some(Guard::Gap(contact)) => Some(contact),
+                _ => None,
+            };
+            self.hold(part, held, (&mut now, &time), terms).map_err(|why| (closes, why))?;
+        }
         for event in events {
             if let EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) = &event.kind {
                 let contact = event.contact.unwrap_or(0);
@@ -158,7 +173,7 @@ impl Field<'_> {
             after.push(now.clone());
         }
         // No jump of the speeds is left out.
-        let off = difference(speeds, &next.first[self.n..]);
+        let off = difference(speeds, &next.first[self.n..], &part.last[self.n..]);
         if off > SPEED_AGREEMENT {
             return Err((None, Reason::Inaccurate(off)));
         }
@@ -170,8 +185,8 @@ impl Field<'_> {
                 *sum += going.terms[index] * time.abs();
             }
         }
-        let apart =
-            self.separation(&modes_after, &self.at_start(next, &now), terms).map_err(|why| (None, why))?;
+        let apart = self.separation(&modes_after, &self.at_start(next, &now), terms, part.end - since);
+        let apart = apart.map_err(|why| (None, why))?;
         if let Some((contact, _, left)) = apart
             && left > TRANSVERSE_SLIP
         {
@@ -182,6 +197,7 @@ impl Field<'_> {
             guard_rate: slopes[k - 1],
             rates_before: before.rates,
             rates_after: going.rates,
+            held,
             collisions,
         };
         Ok(EventDerivatives { time, before: there, after, by: now, junction })
@@ -255,13 +271,22 @@ impl Field<'_> {
     }
 
     /// Checks that slip ends in its own direction: its perpendicular component must vanish.
-    fn check_stop(&self, stopped: &[usize], at: &At<'_>, sizes: &[f64]) -> Result<(), NonDifferentiable> {
+    fn check_stop(
+        &self,
+        (part, modes): (&SmoothPart, &[Mode]),
+        stopped: &[usize],
+        at: &At<'_>,
+        sizes: &[f64],
+    ) -> Result<(), NonDifferentiable> {
+        let none = vec![0.0; part.first.len() * self.k];
+        let rounding = self.rounding_of_directions(modes, &self.at_start(part, &none));
+        let most = TRANSVERSE_SLIP + rounding.map_err(|why| (None, why))?;
         for &contact in stopped {
             let contact_terms =
                 self.contact_terms(&[contact], at).map_err(|error| (None, Reason::State(error)))?;
             for axis in 1..3 {
                 for (d, left) in contact_terms.by(contact_terms.velocity(0, axis)).iter().enumerate() {
-                    if left.abs() > TRANSVERSE_SLIP * self.terms(&contact_terms, (0, axis), (at, sizes), d) {
+                    if left.abs() > most * self.terms(&contact_terms, (0, axis), (at, sizes), d) {
                         return Err((Some(contact), Reason::SlipTurns));
                     }
                 }
@@ -272,7 +297,7 @@ impl Field<'_> {
 
     /// The sum of the magnitudes of the terms in the derivative of a contact velocity along a direction;
     /// `sizes` are those of the derivatives of the state.
-    fn terms(
+    pub fn terms(
         &self,
         contact_terms: &ContactTerms,
         (place, axis): (usize, usize),
@@ -289,12 +314,14 @@ impl Field<'_> {
     }
 
     /// The relative rates at which closed contacts separate, and sticking ones slip, along the directions:
-    /// the contact and the direction with the greatest rate relative to its terms. Gaps are included.
+    /// the contact and the direction with the greatest rate relative to its terms. Gaps are included; `time` is that
+    /// since the previous events.
     pub fn separation(
         &self,
         modes: &[Mode],
         at: &At<'_>,
         sizes: &[f64],
+        time: f64,
     ) -> Result<Option<(usize, usize, f64)>, Reason> {
         let contacts: Vec<usize> = modes.iter().map(|mode| mode.contact).collect();
         if contacts.is_empty() {
@@ -318,6 +345,8 @@ impl Field<'_> {
             let (_, gap) = self.gap(mode.contact, at).map_err(Reason::State)?;
             for (d, &left) in gap.iter().enumerate() {
                 let size = (0..self.n).map(|index| sizes[index * self.k + d]).fold(0.0, f64::max);
+                // What rounding leaves of a velocity moves the contact.
+                let size = size + time * self.terms(&contact_terms, (place, 0), (at, sizes), d);
                 let greatest = at.state[..self.n].iter().fold(0.0_f64, |greatest, q| greatest.max(q.abs()));
                 see(mode.contact, d, left, size + NOTHING * self.relative[d] * greatest);
             }
@@ -326,13 +355,13 @@ impl Field<'_> {
     }
 
     /// Checks that the impacts are collisions of single contacts, which are smooth functions of the state
-    /// before.
+    /// before; returns the end of the bounces of several contacts, if there is no collision because of that.
     fn check_impacts(
         &self,
         part: &SmoothPart,
         next: &SmoothPart,
         events: &[Event],
-    ) -> Result<(), NonDifferentiable> {
+    ) -> Result<Option<Held>, NonDifferentiable> {
         let closed = |contact: usize| part.closed.iter().any(|closed| closed.contact == contact);
         let mut opened: Vec<usize> = Vec::new();
         for event in events {
@@ -347,6 +376,9 @@ impl Field<'_> {
                 _ => {}
             }
         }
+        if settles(part, next, events.iter().any(strikes)) {
+            return self.settling(part, next).map(Some);
+        }
         opened.sort_unstable();
         opened.dedup();
         if opened.len() > 1 {
@@ -358,7 +390,7 @@ impl Field<'_> {
             let stays = next.closed.iter().any(|closed| closed.contact == contact);
             return Err((Some(contact), if stays { Reason::Settling } else { Reason::Grazing }));
         }
-        Ok(())
+        Ok(None)
     }
 
     /// The derivatives of the speeds after an impact (p rows, k columns), and the impact. `terms` as in [`Self::pass`].
@@ -471,9 +503,15 @@ impl Field<'_> {
     }
 }
 
-/// The greatest difference between the entries of two lists, relative to their greatest.
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    let greatest = a.iter().chain(b).fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
+/// Whether an event is an impact that is differentiated.
+fn strikes(event: &Event) -> bool {
+    matches!(event.kind, EventKind::Collision(_) | EventKind::ImpactWithoutCollision(_))
+}
+
+/// The greatest difference between the entries of two lists, relative to the greatest of these and of those before.
+fn difference(a: &[f64], b: &[f64], before: &[f64]) -> f64 {
+    let all = a.iter().chain(b).chain(before);
+    let greatest = all.fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / greatest
 }
 

@@ -5,11 +5,11 @@
 
 use hodograph::generated::hypot;
 use hodograph::{Contacts, Mechanism, State, StateError};
-use hodograph_simulation::{ClosedPart, SmoothPart};
+use hodograph_simulation::{ClosedPart, Guard, SmoothPart};
 use nalgebra::{DMatrix, DVector, Dyn, FullPivLU};
 
 use crate::Reason;
-use crate::field::{ContactTerms, Field};
+use crate::field::{At, ContactTerms, Field};
 
 /// The mode of a closed contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +35,8 @@ pub(crate) struct Mode {
 /// Slip below this part of the terms of the contact velocity, or of the velocity that all kinetic energy would give the
 /// contact, has no direction of its own.
 const NO_DIRECTION: f64 = 1e-10;
+/// This many roundings of a direction of slip, or of a derivative, are no error.
+pub(crate) const ROUNDINGS: f64 = 64.0;
 /// Relative to the greatest mobility of all contacts: an axis with less mobility cannot move.
 const IMMOBILE: f64 = 1e-13;
 /// Relative to the greatest pivot: a smaller pivot means that the forces are not unique.
@@ -109,6 +111,47 @@ impl Field<'_> {
             }
         };
         part.closed.iter().map(|closed| Mode { contact: closed.contact, kind: kind(closed) }).collect()
+    }
+
+    /// The modes during the last part of slip: its direction at the start of the part goes on to its end, where it has none. The
+    /// state there is that with which derivatives came: slip that slow has the direction of the errors of its integration,
+    /// in which it has settled.
+    pub fn modes_to_stop(&self, part: &SmoothPart, state: &[f64]) -> Result<Vec<Mode>, Reason> {
+        let mut modes = self.modes(part);
+        let Some(Guard::Slip(stopped)) = &part.ended_by else { return Ok(modes) };
+        let contacts: Vec<usize> = modes.iter().map(|mode| mode.contact).collect();
+        let none = vec![0.0; part.first.len() * self.k];
+        let directions = |state: &[f64]| -> Result<Vec<Option<[f64; 2]>>, Reason> {
+            let at = At { state, ..self.at_start(part, &none) };
+            let terms = self.contact_terms(&contacts, &at).map_err(Reason::State)?;
+            Ok(Field::directions(&modes, &terms, &state[self.n..]))
+        };
+        let (own, came) = (directions(&part.first)?, directions(state)?);
+        for (mode, found) in modes.iter_mut().zip(own.into_iter().zip(came)) {
+            if let (true, (Some(own), Some(came))) = (stopped.contains(&mode.contact), found) {
+                let forward = own[0] * came[0] + own[1] * came[1] > 0.0;
+                mode.kind = ModeKind::Along(if forward { came } else { own });
+            }
+        }
+        Ok(modes)
+    }
+
+    /// The rounding of the directions of slip in a state, rad. Derivatives along the slip turn with it.
+    pub fn rounding_of_directions(&self, modes: &[Mode], at: &At<'_>) -> Result<f64, Reason> {
+        let contacts: Vec<usize> = modes.iter().map(|mode| mode.contact).collect();
+        let terms = self.contact_terms(&contacts, at).map_err(Reason::State)?;
+        let of = |(place, mode): (usize, &Mode)| -> f64 {
+            let slow = match mode.kind {
+                ModeKind::Stick => return 0.0,
+                ModeKind::Slide { slow, .. } => slow,
+                ModeKind::Along(_) => 0.0,
+            };
+            let slip = [1, 2].map(|axis| terms.value(terms.velocity(place, axis)));
+            let slip = hypot(slip[0], slip[1]);
+            let size: f64 = (0..3).map(|axis| terms.velocity_size(place, axis, &at.state[self.n..])).sum();
+            if slip > slow { f64::EPSILON * size / slip } else { 0.0 }
+        };
+        Ok(ROUNDINGS * modes.iter().enumerate().map(of).fold(0.0, f64::max))
     }
 
     /// The forces in these modes.

@@ -2,6 +2,7 @@
 //!
 //! Theory: docs/theory.md, section 19.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use hodograph::{ComponentKind, Mechanism, State};
@@ -10,7 +11,8 @@ use hodograph_simulation::stepper::{Tolerances, step};
 use hodograph_simulation::{Event, EventKind, Guard, Options, SmoothPart};
 use nalgebra::{DMatrix, DVector};
 
-use crate::field::{At, Direction, Field};
+use crate::collocation::{Collocation, Stages, Stretch};
+use crate::field::{At, Direction, Field, Sampling};
 use crate::followed::{Followed, GradientError, Sample};
 use crate::junction::{EventDerivatives, Junction, NonDifferentiable};
 use crate::modes::{Mode, ModeKind};
@@ -21,8 +23,10 @@ const STATE_AGREEMENT: f64 = 1e-6;
 /// At the start, the rate at which closed contacts separate along a direction may be at most this part of its
 /// terms.
 const MAX_SEPARATION: f64 = 1e-9;
-/// Largest number of integration steps within one step of the motion.
+/// Largest number of explicit steps within one step of the motion. It is tried first; where a contact slides and more
+/// than `FEW_STEPS` are needed, the equations are stiff.
 const MAX_STEPS: usize = 20_000;
+const FEW_STEPS: usize = 32;
 
 /// A motion with its derivatives. Matrices have a row per coordinate and independent speed, in the units of
 /// the model, and a column per variable.
@@ -132,11 +136,18 @@ pub(crate) fn seeds(
 /// The state of the propagation of derivatives through a motion.
 pub(crate) struct Propagation<'m> {
     pub field: Field<'m>,
+    /// steps of stiff parts, once there is one
+    collocation: OnceCell<Collocation<'m>>,
+    sampling: Option<Sampling>,
     tolerances: Tolerances,
     /// derivatives of the state: n + p rows, k columns
     by: Vec<f64>,
     /// magnitudes of the terms that these were added up from: what closed contacts leave of them is rounding of these
     terms: Vec<f64>,
+    /// the state with which derivatives came to the end of the last part
+    reached: Vec<f64>,
+    /// the modes during the last part of slip
+    stopping: Vec<Mode>,
     /// time of the previous events, s
     since: f64,
     pub motion: MotionGradient,
@@ -156,11 +167,14 @@ pub(crate) enum Piece {
         /// the state at its start
         state: Vec<f64>,
     },
+    /// A step of collocation within a part.
+    Collocation { part: usize, stages: Stages },
     /// A line along the rates at the start of a part.
     Straight {
         part: usize,
         /// s
         time: f64,
+        modes: Vec<Mode>,
     },
     /// The sample with this index is taken.
     Sample(usize),
@@ -185,7 +199,11 @@ impl<'m> Propagation<'m> {
             terms: by.iter().map(|by| by.abs()).collect(),
             by,
             field: Field::new(mechanism, directions, followed.surfaces.clone(), followed.sampling),
+            collocation: OnceCell::new(),
+            sampling: followed.sampling,
             tolerances: followed.tolerances.clone(),
+            reached: followed.parts.first().map_or_else(Vec::new, |part| part.first.clone()),
+            stopping: Vec::new(),
             since: followed.start,
             motion: MotionGradient {
                 by: Vec::new(),
@@ -274,7 +292,7 @@ impl<'m> Propagation<'m> {
         }
         match self
             .field
-            .separation(&modes, &self.field.at_start(first, &self.by), &self.terms)
+            .separation(&modes, &self.field.at_start(first, &self.by), &self.terms, 0.0)
             .map_err(|why| (None, why))?
         {
             Some((contact, direction, left)) if left > MAX_SEPARATION => {
@@ -342,6 +360,7 @@ impl<'m> Propagation<'m> {
             agree(&y[..count], &part.last).map_err(|why| (now, why))?;
         }
         self.by.copy_from_slice(&y[count..]);
+        self.reached.copy_from_slice(&y[..count]);
         Ok(())
     }
 
@@ -356,8 +375,10 @@ impl<'m> Propagation<'m> {
         match &part.1.ended_by {
             Some(Guard::Slip(_)) => {
                 let time = to - from;
-                self.keep(|| Piece::Straight { part: part.0, time });
-                self.straight(part.1, modes, time, y)
+                self.stopping = self.field.modes_to_stop(part.1, &self.reached)?;
+                let modes = self.stopping.clone();
+                self.keep(|| Piece::Straight { part: part.0, time, modes });
+                self.straight(part.1, &self.stopping, time, y)
             }
             _ => self.integrate(part, modes, (from, to), y),
         }
@@ -372,18 +393,45 @@ impl<'m> Propagation<'m> {
         y: &mut [f64],
     ) -> Result<(), Reason> {
         let mut pieces = self.pieces.take();
-        let done = self.steps((of, part), modes, (from, to), y, pieces.as_mut());
+        let (start, kept) = (y.to_vec(), pieces.as_ref().map_or(0, Vec::len));
+        let return_to_start = |y: &mut [f64], pieces: &mut Option<Vec<Piece>>| {
+            y.copy_from_slice(&start);
+            pieces.iter_mut().for_each(|pieces| pieces.truncate(kept));
+        };
+        let rubs = |mode: &Mode| {
+            matches!(mode.kind, ModeKind::Slide { .. })
+                && self.field.surface(mode.contact).is_some_and(|surface| surface.mu > 0.0)
+        };
+        let may_be_stiff = modes.iter().any(rubs);
+        let most = if may_be_stiff { FEW_STEPS } else { MAX_STEPS };
+        let mut done = self.steps((of, part), modes, (from, to), y, (most, pieces.as_mut()));
+        if may_be_stiff && done.is_err() {
+            return_to_start(y, &mut pieces);
+            done = Stretch::new(&self.field, part, modes, &self.tolerances)
+                .and_then(|stretch| self.collocate((of, &stretch), (from, to), y, pieces.as_mut()));
+            if done.is_err() {
+                return_to_start(y, &mut pieces);
+                done = self.steps((of, part), modes, (from, to), y, (MAX_STEPS, pieces.as_mut()));
+            }
+        }
         self.pieces = pieces;
         done
     }
 
+    /// Steps of collocation.
+    pub(crate) fn collocation(&self) -> &Collocation<'m> {
+        let make = || Collocation::new(self.field.mechanism, self.field.surfaces.clone(), self.sampling);
+        self.collocation.get_or_init(make)
+    }
+
+    /// At most so many explicit steps.
     fn steps(
         &self,
         (of, part): (usize, &SmoothPart),
         modes: &[Mode],
         (from, to): (f64, f64),
         y: &mut [f64],
-        mut pieces: Option<&mut Vec<Piece>>,
+        (most, mut pieces): (usize, Option<&mut Vec<Piece>>),
     ) -> Result<(), Reason> {
         let count = part.first.len();
         let row = self.field.row(part.start);
@@ -403,7 +451,7 @@ impl<'m> Propagation<'m> {
             }
         };
         let (mut now, mut h) = (from, to - from);
-        for _ in 0..MAX_STEPS {
+        for _ in 0..most {
             if now >= to {
                 return Ok(());
             }
@@ -483,17 +531,10 @@ impl<'m> Propagation<'m> {
         next: &SmoothPart,
         events: &[Event],
     ) -> Result<EventDerivatives, NonDifferentiable> {
-        let mut modes = self.field.modes(part);
-        if let Some(Guard::Slip(stopped)) = &part.ended_by {
-            // Slip is zero at its end, so it takes the direction shortly before.
-            let at = self.field.at_start(part, &self.by);
-            let mode_rates = self.field.mode_rates(&modes, &at).map_err(|why| (None, why))?;
-            for (mode, direction) in modes.iter_mut().zip(mode_rates.directions) {
-                if let (true, Some(along)) = (stopped.contains(&mode.contact), direction) {
-                    mode.kind = ModeKind::Along(along);
-                }
-            }
-        }
+        let modes = match &part.ended_by {
+            Some(Guard::Slip(_)) => self.stopping.clone(),
+            _ => self.field.modes(part),
+        };
         self.field.pass((part, next), &modes, (&self.by, &mut self.terms), events, self.since)
     }
 }

@@ -11,8 +11,10 @@ use hodograph_simulation::{Guard, SmoothPart};
 use nalgebra::{DVector, Vector3};
 
 use crate::field::{ContactTerms, Field, RoutineKey, failed};
+use crate::held::Held;
 use crate::junction::{ENTRIES, Junction, Struck};
 use crate::modes::{Balance, Mode, Slip};
+
 use crate::{By, Reason};
 
 /// A state without derivatives.
@@ -345,10 +347,47 @@ impl<'f> TransposedField<'f> {
             weights.iter_mut().zip(&by.state).for_each(|(weight, by)| *weight += by);
             of_time += by.time;
         }
+        if let Some(held) = &junction.held {
+            of_time += self.of_held(part, held, weights)?;
+        }
         of_time += dot(weights, &junction.rates_before);
         let by = self.of_guard(part, &junction.modes, -of_time / junction.guard_rate)?;
         weights.iter_mut().zip(&by.state).for_each(|(weight, by)| *weight += by);
         Ok(())
+    }
+
+    /// Takes the weights of the state of which contacts have taken what was left of their velocities to those of the state
+    /// before; returns the weight of its time.
+    fn of_held(&mut self, part: &SmoothPart, held: &Held, weights: &mut [f64]) -> Result<f64, Reason> {
+        let n = self.field.n;
+        let place = Place {
+            time: part.end,
+            state: &held.state,
+            inputs: &part.inputs,
+            row: self.field.row(part.start),
+        };
+        let contacts: Vec<usize> = held.modes.iter().map(|mode| mode.contact).collect();
+        let tape = self.mode_rates(&held.modes, &place)?;
+        let pushes =
+            |column: &Vec<f64>| -> f64 { column.iter().zip(&weights[n..]).map(|(c, w)| c * w).sum() };
+        let columns = &tape.balance.columns;
+        let of_impulses = DVector::from_iterator(columns.len(), columns.iter().map(pushes));
+        let of_velocity = solve_transposed(&tape.balance, &of_impulses).ok_or(Reason::ForcesNotUnique)?;
+        let mut of_terms = vec![0.0; tape.evaluated.values.len()];
+        for (unknown, of) in tape.balance.unknowns.iter().zip(&of_velocity) {
+            of_terms[tape.terms.velocity(unknown.place, unknown.axis)] = -of;
+        }
+        let mut by = ByState::none(self.field);
+        self.transpose(&tape.evaluated, &of_terms, &mut by);
+        weights.iter_mut().zip(&by.state).for_each(|(weight, by)| *weight += by);
+        let mut of_gaps = ByState::none(self.field);
+        for (row, contact) in contacts.into_iter().take(held.openings.ncols()).enumerate() {
+            let of: f64 = held.openings.column(row).iter().zip(&weights[..n]).map(|(o, w)| o * w).sum();
+            let evaluated = self.evaluate(RoutineKey::Gap(contact), &place).map_err(Reason::State)?;
+            self.transpose(&evaluated, &[-of], &mut of_gaps);
+        }
+        weights.iter_mut().zip(&of_gaps.state).for_each(|(weight, by)| *weight += by);
+        Ok(by.time + of_gaps.time)
     }
 
     /// The derivatives of a weighted sum of the changes of the speeds in a collision.

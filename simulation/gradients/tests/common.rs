@@ -53,7 +53,7 @@ impl Task {
     }
 
     /// The variable, changed by `h`.
-    fn changed(&self, by: By, h: f64) -> Task {
+    pub fn changed(&self, by: By, h: f64) -> Task {
         let mut task =
             Task { mechanism: self.mechanism.clone(), q: self.q.clone(), u: self.u.clone(), ..*self };
         match by {
@@ -75,7 +75,7 @@ impl Task {
     }
 
     /// The state at a time, and the times of the events up to there.
-    fn end(&self, until: f64) -> (DVector<f64>, Vec<f64>) {
+    pub fn end(&self, until: f64) -> (DVector<f64>, Vec<f64>) {
         let state = State { time: 0.0, coordinates: &self.q, speeds: &self.u, inputs: &[] };
         let mut simulation =
             Simulation::new(&self.mechanism, &state, options(self.mu, self.e, self.law)).unwrap();

@@ -1,5 +1,6 @@
 //! Derivatives of motions, against closed forms and differences.
 
+mod bounces_end;
 mod closed_forms;
 mod common;
 mod contact_tasks;
@@ -11,5 +12,6 @@ mod fits;
 mod hopper;
 mod orbits;
 mod samples;
+mod slip_begins;
 mod undefined;
 mod validation;
