@@ -175,6 +175,8 @@ pub enum Reason {
     /// The bounces of several contacts end together, and the gaps that are left have derivatives that matter: the order of the
     /// bounces changes with the variables, the more so the lower they are.
     Settling,
+    /// A contact with e = 0 stays closed after a collision, and with any larger e it bounces.
+    Plastic,
     /// The modes changed by a cause whose time does not follow from the state.
     ModesChanged,
     /// The mechanism cannot be evaluated.
@@ -221,6 +223,10 @@ impl fmt::Display for Undefined {
                     "the bounces of several contacts end together, and the order of the last ones depends on the variables without bound: ask for derivatives before this time, or begin from a start whose corners strike in a steadier order"
                 )
             }
+            Reason::Plastic => write!(
+                out,
+                "with e = 0 the contact stays closed after its collision, and with any larger e it bounces: take a small e, or leave e out"
+            ),
             Reason::ModesChanged => write!(
                 out,
                 "the modes of the contacts changed by something whose time does not follow from the state"

@@ -187,10 +187,12 @@ impl Field<'_> {
         }
         let apart = self.separation(&modes_after, &self.at_start(next, &now), terms, part.end - since);
         let apart = apart.map_err(|why| (None, why))?;
-        if let Some((contact, _, left)) = apart
+        if let Some((contact, d, left)) = apart
             && left > TRANSVERSE_SLIP
         {
-            return Err((Some(contact), Reason::Inaccurate(left)));
+            let plastic = self.surface(contact).is_some_and(|surface| surface.e == 0.0);
+            let bounces = plastic && self.by_restitution(d, contact) != 0.0 && events.iter().any(strikes);
+            return Err((Some(contact), if bounces { Reason::Plastic } else { Reason::Inaccurate(left) }));
         }
         let junction = Junction {
             modes: modes.to_vec(),

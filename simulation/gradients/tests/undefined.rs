@@ -60,6 +60,19 @@ fn a_collision_without_slip_has_no_derivative() {
     assert!(found.undefined.is_none() && found.events.len() == 1, "{:?}", found.undefined);
 }
 
+/// A ball that stays on the plate after a plastic collision: by e there is no derivative, by its height there is one.
+#[test]
+fn a_plastic_collision_has_no_derivative_by_e() {
+    let mechanism = read("ball_on_plate.mech");
+    let state = State { time: 0.0, coordinates: &[0.1], speeds: &[0.0], inputs: &[] };
+    let by = |variable| {
+        differentiate(&mechanism, &state, options(0.0, 0.0, Law::Newton), &[variable], &[0.2]).unwrap()
+    };
+    let found = by(By::Coordinate(0));
+    assert!(found.undefined.is_none() && !found.events.is_empty(), "{:?}", found.undefined);
+    assert_eq!(by(By::Restitution(None)).undefined.unwrap().reason, Reason::Plastic);
+}
+
 /// A ball that only just reaches the plate.
 #[test]
 fn grazing_has_no_derivative() {
