@@ -135,3 +135,19 @@ fn what_is_lost_is_the_power_of_gravity_and_springs() {
     assert!((lost - now.conservative_power).abs() < 1e-7 * lost.abs(), "{lost} {}", now.conservative_power);
     assert!((lost - now.power).abs() > 1e-3, "the dampers' power is another: {lost} {}", now.power);
 }
+
+/// Also where the ends of a spring have other velocities than their places.
+#[test]
+fn both_roads_have_the_same_forces() {
+    for loads in
+        CONSERVATIVE.into_iter().chain(OTHERS).chain(["spring R to H: { stiffness: k, damping: c };"])
+    {
+        let derived = Derived::of(&model(loads));
+        let mut state = derived.state();
+        (state.time, state.speeds) = (0.3, vec![0.3, -0.4, 0.5, 1.1, -0.7, 0.9]);
+        let theirs = numeric::evaluate(&derived.mechanism, &state).unwrap().forcing;
+        for (ours, theirs) in derived.get(&state, Quantity::Forcing).into_iter().zip(theirs) {
+            assert!((ours - theirs).abs() <= 1e-12 * (1.0 + theirs.abs()), "{loads}: {ours} {theirs}");
+        }
+    }
+}
