@@ -1,5 +1,6 @@
 //! Derivations of small models.
 
+mod central_momentum;
 mod potential_energy;
 
 use hodograph_derive::derive;
