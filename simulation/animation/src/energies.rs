@@ -1,7 +1,7 @@
 //! The energies of a motion over time.
 
 use hodograph::{Contacts, State};
-use hodograph_model::model::mechanism::{LoadKind, Mechanism};
+use hodograph_model::model::mechanism::{Load, LoadKind, Mechanism};
 
 /// Energies at the recorded moments, J.
 #[derive(Clone, Debug, Default)]
@@ -33,12 +33,20 @@ impl Energies {
 
 /// The note on a model without potential energy; `None` if no load could have one.
 pub fn missing(model: &Mechanism) -> Option<String> {
-    let conservative = |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_) | LoadKind::Spring { .. });
-    model.loads.iter().any(|load| conservative(&load.kind)).then(|| {
-        format!(
-            "the potential energy of {} is not defined by its coordinates (the position of a body with weight, or of a spring, follows from \
-             velocities alone): neither it nor the sum of the energies is shown",
-            model.name
-        )
-    })
+    let fed = |load: &&Load| !matches!(load.kind, LoadKind::Force { .. } | LoadKind::Torque { .. });
+    let mut loads = model.loads.iter().filter(fed).peekable();
+    loads.peek()?;
+    let why = match loads.find(|load| !load.potential).map(|load| &load.kind) {
+        Some(LoadKind::Gravity(_)) => {
+            "its gravity depends on coordinates or inputs, or a mass centre moves otherwise than its place"
+        }
+        Some(_) => {
+            "a spring depends on coordinates or inputs, or its length or angle changes otherwise than what it moves"
+        }
+        None => "the position of a body with weight follows from velocities alone",
+    };
+    Some(format!(
+        "the potential energy of {} is not defined ({why}): neither it nor the sum of the energies is shown",
+        model.name
+    ))
 }

@@ -8,8 +8,8 @@
 pub struct EnergyAccount {
     /// kinetic energy
     pub kinetic: f64,
-    /// potential energy of gravity and springs; `None` if the model has neither, or if it is not a function
-    /// of the coordinates
+    /// potential energy of gravity and springs; `None` if it is not a function of the coordinates, or if one
+    /// of these loads has none, as of a stiffness that depends on coordinates: that is an applied force
     pub potential: Option<f64>,
     /// work of friction in lasting contact, including its torques; not positive
     pub friction: f64,

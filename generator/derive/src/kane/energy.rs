@@ -4,7 +4,7 @@ use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::entry;
 use crate::kinematics::linear_forms::{self, Triple};
-use hodograph_model::model::mechanism::{FrameId, LoadKind, PointId};
+use hodograph_model::model::mechanism::{FrameId, Load, LoadKind, PointId};
 use hodograph_model::number::Number;
 
 fn half() -> Expr {
@@ -39,8 +39,12 @@ pub fn kinetic_energy(k: &mut Kinematics<'_>) -> Expr {
 }
 
 /// Potential energy of gravity and springs, zero with every mass centre at O; `None` where a height is not
-/// known.
+/// known, or where one of these loads has none: its force is not minus the gradient.
 pub fn potential_energy(k: &mut Kinematics<'_>) -> Option<Expr> {
+    let applied = |load: &Load| matches!(load.kind, LoadKind::Force { .. } | LoadKind::Torque { .. });
+    if k.mechanism.loads.iter().any(|load| !load.potential && !applied(load)) {
+        return None;
+    }
     let gravity = super::forces::gravity(k);
     let mut sum = Expr::zero();
     if !gravity.is_empty() {

@@ -14,9 +14,9 @@ use super::contacts::ContactForms;
 use super::forces::{self, Wrenches};
 use super::{bounds, energy, inertia, momentum};
 use crate::algebra::{Direction, Export, Expr};
-use crate::kinematics::Kinematics;
-use crate::kinematics::linear_forms::LinearScalar;
+use crate::kinematics::linear_forms::{LinearScalar, Triple};
 use crate::kinematics::solve::Solver;
+use crate::kinematics::{GuardedValue, Kinematics};
 use hodograph_program::program::differentiate::differentiate;
 use hodograph_program::program::graph::{Graph, Input, Node};
 use hodograph_program::program::ldl::{Factor, factorise};
@@ -81,7 +81,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     writer.guards();
     let samples = super::samples::samples(writer.k.mechanism);
     let mut apart = if rates.is_some() { writer.derivatives(&samples) } else { Vec::new() };
-    // A separate derivation, so that its operations and numbers do not affect those of the equations of
+    // Separate derivations, so that their operations and numbers do not affect those of the equations of
     // motion.
     let (graph, outputs, guards) = (writer.graph.clone(), writer.outputs.split_off(0), writer.guards.clone());
     apart.extend(writer.momenta(&samples));
@@ -407,19 +407,41 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// Momenta, and position and velocity of the mass centre, as a separate derivation.
-    fn momenta(mut self, samples: &[Inputs]) -> Option<Derived> {
+    /// Momenta, and position and velocity of the mass centre, as a separate derivation; the angular momentum about
+    /// the mass centre, which is formed of other vectors, as one more.
+    fn momenta(&mut self, samples: &[Inputs]) -> Vec<Derived> {
         let before = self.k.guards.len();
-        for (quantity, components) in momentum::momenta(self.k) {
+        let all = momentum::momenta(self.k);
+        let all = self.separate(all, before, samples);
+        let central = momentum::central_angular_momentum(self.k);
+        let central = central.map(|spin| (Quantity::CentralAngularMomentum, spin));
+        let central = self.separate(central, before, samples);
+        all.into_iter().chain(central).collect()
+    }
+
+    /// A separate derivation of some vectors, with the guards that came after so many others; `None` of none.
+    fn separate(
+        &mut self,
+        vectors: impl IntoIterator<Item = (Quantity, Triple)>,
+        before: usize,
+        samples: &[Inputs],
+    ) -> Option<Derived> {
+        for (quantity, components) in vectors {
             let nodes = self.nodes(&components);
             self.put(quantity, 3, 1, nodes);
         }
-        self.k.guards.drain(..before);
-        self.guards();
-        (!self.outputs.is_empty()).then(|| Derived {
-            graph: self.graph,
-            outputs: self.outputs,
-            guards: self.guards,
+        let others = self.guards.len();
+        let added: Vec<GuardedValue> = self.k.guards.iter().skip(before).cloned().collect();
+        for guard in added {
+            self.guard(guard);
+        }
+        let outputs = self.outputs.split_off(0);
+        let guards = self.guards.clone();
+        self.guards.truncate(others);
+        (!outputs.is_empty()).then(|| Derived {
+            graph: self.graph.clone(),
+            outputs,
+            guards,
             structures: Vec::new(),
             samples: samples.to_vec(),
             apart: Vec::new(),
@@ -453,11 +475,15 @@ impl Writer<'_, '_> {
 
     fn guards(&mut self) {
         for guard in self.k.guards.clone() {
-            let value = self.node(&guard.value);
-            let scale = Some(self.node(&guard.scale));
-            if self.graph.as_number(value).is_none() {
-                self.guards.push(Guard { value, scale, message: guard.message });
-            }
+            self.guard(guard);
+        }
+    }
+
+    fn guard(&mut self, guard: GuardedValue) {
+        let value = self.node(&guard.value);
+        let scale = Some(self.node(&guard.scale));
+        if self.graph.as_number(value).is_none() {
+            self.guards.push(Guard { value, scale, message: guard.message });
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Builds the graph of velocities, one relation per frame and per point, and computes velocities and partial
 //! velocities from it.
 
+use std::collections::BTreeMap;
+
 use super::axes::{AxesId, AxesTree, Turn};
 use super::linear_forms::{self, LinearVector, Triple};
 use super::partial_velocities::Along;
@@ -227,6 +229,51 @@ impl Kinematics<'_> {
         let form = self.express_linear(&form, home);
         let value = self.vector_value(&form);
         (home, linear_forms::name(&mut self.z, value))
+    }
+
+    /// Value of the velocity of one point minus that of another, along N.x, N.y, N.z: the sum of the relations
+    /// between them, from which what both have in common drops out.
+    pub fn relative_velocity(&mut self, of: PointId, from: PointId) -> Triple {
+        let (mut ahead, mut behind) = (self.bases(of), self.bases(from));
+        if let Some(i) = ahead.iter().position(|point| behind.contains(point)) {
+            behind.truncate(behind.iter().position(|point| *point == ahead[i]).unwrap_or(0));
+            ahead.truncate(i);
+        }
+        let mut arms: BTreeMap<(FrameId, AxesId), Triple> = BTreeMap::new();
+        let mut relative = MixedLinear::new();
+        for (chain, sign) in [(ahead, 1), (behind, -1)] {
+            let sign = Expr::integer(sign);
+            for point in chain {
+                let motion = self.points[point.0].clone();
+                for arm in motion.arms {
+                    let sum = arms.entry((arm.frame, arm.axes)).or_insert_with(linear_forms::zero);
+                    *sum = linear_forms::add(sum, &linear_forms::scale(&sign, &arm.arm));
+                }
+                for (axes, form) in motion.relative {
+                    relative = add_linear(&relative, &scale_linear(&sign, &[(axes, form)].into()));
+                }
+            }
+        }
+        let mut sum = linear_forms::zero();
+        for ((frame, axes), arm) in arms {
+            let frame_home = self.frames[frame.0].home;
+            let w = self.angular_velocity(frame);
+            let w = self.tree.convert(&mut self.z, &w, frame_home, axes);
+            let arm = linear_forms::name(&mut self.z, arm);
+            let part = linear_forms::name(&mut self.z, linear_forms::cross(&w, &arm));
+            sum = linear_forms::add(&sum, &self.tree.convert(&mut self.z, &part, axes, AxesTree::N));
+        }
+        for (axes, form) in relative {
+            let value = self.vector_value(&form);
+            let value = linear_forms::name(&mut self.z, value);
+            sum = linear_forms::add(&sum, &self.tree.convert(&mut self.z, &value, axes, AxesTree::N));
+        }
+        linear_forms::name(&mut self.z, sum)
+    }
+
+    /// The points whose relations add up to the velocity of a point, itself first.
+    fn bases(&self, point: PointId) -> Vec<PointId> {
+        std::iter::successors(Some(point), |point| self.points[point.0].base).collect()
     }
 
     /// Value of a point's velocity in N, in its home axes.

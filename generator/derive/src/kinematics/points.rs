@@ -1,6 +1,6 @@
 //! Positions of points, and their velocities while the kinematical equations are being set up.
 
-use super::linear_forms::{self, LinearVector};
+use super::linear_forms::{self, LinearVector, Triple};
 use super::vectors::{add, add_linear, scale};
 use super::{Kinematics, Mixed, MixedLinear};
 use crate::algebra::Expr;
@@ -27,6 +27,28 @@ impl Kinematics<'_> {
 
     /// Position of one point from another.
     pub fn position(&mut self, of: PointId, from: PointId) -> Mixed {
+        let mut sum = Mixed::new();
+        for (point, sign) in self.steps(of, from) {
+            let step = self.step(point);
+            sum = add(&sum, &scale(&Expr::integer(sign), &step));
+        }
+        sum
+    }
+
+    /// The same without names for the steps: what two of them share drops out.
+    pub fn separation(&mut self, of: PointId, from: PointId) -> Mixed {
+        let mut sum = Mixed::new();
+        for (point, sign) in self.steps(of, from) {
+            let step = self.unnamed_step(point);
+            sum = add(&sum, &scale(&Expr::integer(sign), &step));
+        }
+        let shortened = |k: &mut Self, v: Triple| v.map(|component| k.z.simplify(&component));
+        let sum: Mixed = sum.into_iter().map(|(axes, v)| (axes, shortened(self, v))).collect();
+        sum.into_iter().filter(|(_, v)| !linear_forms::is_zero(v)).collect()
+    }
+
+    /// The points to which the steps lead by which one point lies from another, and their signs.
+    fn steps(&self, of: PointId, from: PointId) -> Vec<(PointId, i64)> {
         let (mut ahead, mut behind) = (self.way(of), self.way(from));
         while ahead.len() > 1 && behind.len() > 1 && ahead[ahead.len() - 2] == behind[behind.len() - 2] {
             ahead.pop();
@@ -39,24 +61,25 @@ impl Kinematics<'_> {
             let j = behind.iter().position(|&p| p == common).unwrap_or(0);
             behind.truncate(j + 1);
         }
-        let mut sum = Mixed::new();
-        for (way, sign) in [(ahead, 1), (behind, -1)] {
-            for point in way.iter().take(way.len() - 1) {
-                let step = self.step(*point);
-                sum = add(&sum, &scale(&Expr::integer(sign), &step));
-            }
-        }
-        sum
+        let signed = |way: Vec<PointId>, sign: i64| {
+            let steps = way.len() - 1;
+            way.into_iter().take(steps).map(move |point| (point, sign))
+        };
+        signed(ahead, 1).chain(signed(behind, -1)).collect()
     }
 
     /// The last step to a point.
     pub(super) fn step(&mut self, point: PointId) -> Mixed {
+        let step = self.unnamed_step(point);
+        step.into_iter().map(|(axes, v)| (axes, linear_forms::name(&mut self.z, v))).collect()
+    }
+
+    fn unnamed_step(&mut self, point: PointId) -> Mixed {
         let mechanism = self.mechanism;
         match &mechanism.points[point.0].place {
             Place::Offset { by, .. } | Place::Material { by, .. } => {
                 let place = format!("the position of point `{}`", mechanism.points[point.0].name);
-                let step = self.within(place, |k| k.vector(by));
-                step.into_iter().map(|(axes, v)| (axes, linear_forms::name(&mut self.z, v))).collect()
+                self.within(place, |k| k.vector(by))
             }
             Place::Origin | Place::Velocity(_) => Mixed::new(),
         }

@@ -1,12 +1,14 @@
-//! Checks loads by numbers: the points on which forces act, and the axes and angles of torsion springs.
+//! Checks loads by numbers: the points on which forces act, the axes and angles of torsion springs, and which
+//! loads have a potential energy.
 
 use super::contacts::Places;
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::model::constancy::is_zero;
 use crate::model::mechanism::*;
-use crate::numeric::hyper_dual::sub;
-use crate::numeric::views::{Vector3, cross3, dot3, norm3};
-use crate::numeric::{Evaluator, Level, Views};
+use crate::numeric::hyper_dual::{HyperDual, Triple, sub};
+use crate::numeric::views::{Vector3, cross3, dot3, norm3, values};
+use crate::numeric::{Evaluator, Failure, Level, Views};
 use crate::span::Span;
 
 /// Rates may differ by this much, relative to the larger.
@@ -51,6 +53,57 @@ pub fn loads(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
         }
     }
     out
+}
+
+/// Gravity and springs that move other things than those by which their energy is known: a point of a body
+/// whose place moves on the body, or a frame that does not turn about the axis as the angle grows.
+pub fn without_potential(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<usize> {
+    let elsewhere = |load: &Load| {
+        let at = |views: &Views<'_>| match &load.kind {
+            LoadKind::Gravity(g) => m.bodies.iter().any(|body| falls_elsewhere(views, body, g)),
+            LoadKind::Spring { a, b, .. } => pulls_elsewhere(views, *a, *b),
+            LoadKind::Torsion { on, from, axis, angle, .. } => {
+                let turns = Turns { on: *on, from: from.unwrap_or(FrameId::N), axis, angle };
+                turns.fit(views).is_some_and(|fit| fit != Fit::Same)
+            }
+            LoadKind::Force { .. } | LoadKind::Torque { .. } => false,
+        };
+        load.potential && !is_slack(&load.kind) && seen.iter().any(|seen| at(&seen.views))
+    };
+    (0..m.loads.len()).filter(|&i| elsewhere(&m.loads[i])).collect()
+}
+
+/// Whether it is a spring without stiffness.
+fn is_slack(load: &LoadKind) -> bool {
+    match load {
+        LoadKind::Spring { stiffness, .. } | LoadKind::Torsion { stiffness, .. } => is_zero(stiffness),
+        _ => false,
+    }
+}
+
+/// Whether two rates with these parts differ.
+fn apart(a: &[f64], b: &[f64]) -> bool {
+    let size = a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
+    a.iter().zip(b).any(|(a, b)| (a - b).abs() > SAME * size)
+}
+
+/// Whether the height of the mass centre does not change as its velocity says. Where it has no height there is
+/// no energy anyway.
+fn falls_elsewhere(views: &Views<'_>, body: &Body, g: &Vector) -> bool {
+    let Ok(g) = views.now.vector(g, Level::Motion).map(values) else { return false };
+    let along = |v: Result<Triple, Failure>| v.map(|v| dot3(values(v), g));
+    let height = views.parts(|of| along(of.rate_of_position(body.centre)));
+    let motion = views.parts(|of| along(of.velocity(body.centre)));
+    matches!((height, motion), (Ok(height), Ok(motion)) if apart(&height, &motion))
+}
+
+/// Whether the length between two points does not change as their velocities say.
+fn pulls_elsewhere(views: &Views<'_>, a: PointId, b: PointId) -> bool {
+    let line = |of: &Evaluator<'_>| Ok(sub(of.position(b)?, of.position(a)?));
+    let Ok(along) = line(&views.now).map(values) else { return false };
+    let length = views.parts(|of| Ok(dot3(values(line(of)?.map(HyperDual::rate)), along)));
+    let motion = views.parts(|of| Ok(dot3(values(sub(of.velocity(b)?, of.velocity(a)?)), along)));
+    matches!((length, motion), (Ok(length), Ok(motion)) if apart(&length, &motion))
 }
 
 /// The place at which an end of the load is named.

@@ -176,7 +176,9 @@ fn analysed(source: &Source) -> Analysis {
             diagnostics.extend(counts);
         }
         let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
-        diagnostics.extend(physics::physics(mechanism, readable, name));
+        let found = physics::physics(mechanism, readable, name);
+        diagnostics.extend(found.mistakes);
+        found.without_potential.into_iter().for_each(|load| mechanism.loads[load].potential = false);
     }
     // only the first mistake at a place is reported: others there follow from it
     let mut places = std::collections::HashSet::new();

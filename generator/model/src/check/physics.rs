@@ -20,8 +20,17 @@ const IN_RANGE: &str =
 /// Mechanisms of more parts than this are not looked at: it would take too long.
 pub const MOST_PARTS: usize = 8000;
 
-/// Mistakes that show in numbers, in what could be read of the mechanism; `name` is where it is named.
-pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
+/// What shows in numbers.
+#[derive(Default)]
+pub struct Found {
+    /// mistakes
+    pub mistakes: Vec<Diagnostic>,
+    /// gravity and springs whose force is not minus the gradient of their energy
+    pub without_potential: Vec<usize>,
+}
+
+/// What numbers show of what could be read of the mechanism; `name` is where it is named.
+pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Found {
     let parts = parts(m);
     if parts > MOST_PARTS {
         let message = format!("a mechanism of {parts} parts is too large for numerical checks");
@@ -29,9 +38,14 @@ pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic
             "mistakes that only evaluation shows (impossible inertias, singular constraints, normals that are not unit vectors) are not \
              found in more than {MOST_PARTS} points, frames, definitions, bodies and contacts"
         );
-        return vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
+        let mistakes = vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
+        return Found { mistakes, ..Found::default() };
     }
-    with_room(|| look(m, readable, name))
+    with_room(|| {
+        let mut without_potential = Vec::new();
+        let mistakes = look(m, readable, name, &mut without_potential);
+        Found { mistakes, without_potential }
+    })
 }
 
 /// Equations that say nothing.
@@ -71,10 +85,15 @@ pub(super) fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T
     })
 }
 
-fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
+fn look(
+    m: &Mechanism,
+    readable: &Readable,
+    name: Span,
+    without_potential: &mut Vec<usize>,
+) -> Vec<Diagnostic> {
     if let Some(rest) = without_unread_contacts(m, readable) {
         let readable = Readable { contacts: vec![true; rest.contacts.len()], ..readable.clone() };
-        return look(&rest, &readable, name);
+        return look(&rest, &readable, name, without_potential);
     }
     let arbitrary = states::arbitrary(m);
     let stated = |list: &[State], dependent| -> Vec<State> {
@@ -126,7 +145,8 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
     let of_shapes = shapes::shapes(m, alone.last(), &seen);
     if let Some(rest) = without_contacts_of(m, &of_shapes) {
         let readable = Readable { contacts: vec![true; rest.contacts.len()], ..readable.clone() };
-        return of_shapes.into_iter().map(|(_, found)| found).chain(look(&rest, &readable, name)).collect();
+        let rest = look(&rest, &readable, name, without_potential);
+        return of_shapes.into_iter().map(|(_, found)| found).chain(rest).collect();
     }
     // numbers show such a divisor as rounding
     if sound && let Some(found) = divisors::vanishing(m) {
@@ -167,6 +187,7 @@ fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
     if !out.iter().any(|found| found.hides_meaning() && !of_one_part.contains(&found.code)) {
         out.extend(gaps::gaps(m, &seen, &out));
         out.extend(loads::loads(m, &seen));
+        *without_potential = loads::without_potential(m, &seen);
         out.extend(loops::open_at_the_start(m));
         let flawless = !out.iter().any(Diagnostic::hides_meaning);
         out.extend(finite::at_the_start(m, flawless));

@@ -1,5 +1,6 @@
 //! Gives a model its meaning: resolves names and checks dimensions.
 
+pub(crate) mod constancy;
 mod dependency_order;
 pub mod hulls;
 mod lower;

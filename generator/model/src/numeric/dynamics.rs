@@ -45,7 +45,7 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
         add_body(views, body, &mut out)?;
     }
     for load in &m.loads {
-        add_load(m, views, &load.kind, &mut out)?;
+        add_load(m, views, load, &mut out)?;
     }
     for contact in &m.contacts {
         out.contacts.push(contact_values(views, contact)?);
@@ -149,15 +149,19 @@ fn add_torque(
 }
 
 /// Adds what is stored where a force or a torque has a potential: the energy, and the power that it gives.
-fn add_stored(energy: Option<f64>, power: f64, out: &mut Evaluation) {
+/// Where it has none, it is one applied force more.
+fn add_stored(load: &Load, energy: Option<f64>, power: f64, out: &mut Evaluation) {
+    let energy = energy.filter(|_| load.potential);
     out.potential_energy = out.potential_energy.zip(energy).map(|(sum, energy)| sum + energy);
-    out.conservative_power += power;
+    if load.potential {
+        out.conservative_power += power;
+    }
 }
 
-fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluation) -> Result<(), Failure> {
+fn add_load(m: &Mechanism, views: &Views<'_>, load: &Load, out: &mut Evaluation) -> Result<(), Failure> {
     let now = &views.now;
     let level = Level::Motion;
-    match load {
+    match &load.kind {
         LoadKind::Gravity(vector) => {
             let g = values(now.vector(vector, level)?);
             for body in &m.bodies {
@@ -168,7 +172,7 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
                     true => Some(-dot3(values(now.position(body.centre)?), weight)),
                     false => None,
                 };
-                add_stored(height, dot3(values(now.velocity(body.centre)?), weight), out);
+                add_stored(load, height, dot3(values(now.velocity(body.centre)?), weight), out);
             }
         }
         LoadKind::Force { on, from, force } => {
@@ -193,9 +197,11 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
             }
             let [k, rest, c] = [stiffness, length, damping].map(|s| now.scalar(s, level));
             let (k, stretch) = (k?.re, distance.re - rest?.re);
-            add_stored(Some(0.5 * k * stretch * stretch), -k * stretch * distance.e1, out);
-            let tension = k * stretch + c?.re * distance.e1;
-            let pull = values(line).map(|c| tension * c / distance.re);
+            let along = values(line).map(|c| c / distance.re);
+            let apart = dot3(values(sub(now.velocity(*b)?, now.velocity(*a)?)), along);
+            add_stored(load, Some(0.5 * k * stretch * stretch), -k * stretch * apart, out);
+            let tension = k * stretch + c?.re * apart;
+            let pull = along.map(|c| tension * c);
             add_force(views, *a, pull, out)?;
             add_force(views, *b, pull.map(|c| -c), out)?;
         }
@@ -204,7 +210,16 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
             let angle = now.scalar(angle, Level::Geometry)?;
             let [rest, k, c] = [rest, stiffness, damping].map(|s| now.scalar(s, level));
             let (k, stretch) = (k?.re, angle.re - rest?.re);
-            add_stored(Some(0.5 * k * stretch * stretch), -k * stretch * angle.e1, out);
+            let mut turning = now.angular_velocity(*on)?;
+            if let Some(from) = from {
+                turning = sub(turning, now.angular_velocity(*from)?);
+            }
+            add_stored(
+                load,
+                Some(0.5 * k * stretch * stretch),
+                -k * stretch * dot3(values(turning), axis),
+                out,
+            );
             let size = -(k * stretch + c?.re * angle.e1);
             let torque = axis.map(|c| size * c);
             add_torque(views, *on, torque, out)?;

@@ -58,9 +58,10 @@ pub struct Evaluation {
     /// power of all loads, W
     pub power: f64,
     /// potential energy of gravity and springs, J, zero with every mass centre at O; `None` where a height is not
-    /// known
+    /// known, or one of these loads has none
     pub potential_energy: Option<f64>,
-    /// power of the loads that this energy feeds: gravity, and springs without their dampers, W
+    /// power of the loads that this energy feeds: gravity, and springs without their dampers, W; not of those
+    /// that have none
     pub conservative_power: f64,
     /// contacts, in the order of the file
     pub contacts: Vec<ContactEvaluation>,

@@ -1,5 +1,6 @@
 //! Lowers loads.
 
+use super::super::constancy::has_constant_coefficients;
 use super::super::mechanism::{FrameId, Load, LoadKind, Scalar};
 use super::super::typed::Typed;
 use super::{Lowering, QuantityFacts};
@@ -49,7 +50,8 @@ impl Lowering<'_> {
                     |word: &&str| load.ends.iter().find(|(w, _)| w.as_ref().map_or("", |w| &w.text) == *word);
                 let ends =
                     ["on", "", "from", "to"].iter().filter_map(end).map(|(_, name)| name.span).collect();
-                self.out.loads.push(Load { kind, ends, span: load.span });
+                let potential = has_constant_coefficients(&self.out, &kind);
+                self.out.loads.push(Load { kind, potential, ends, span: load.span });
             }
         }
     }

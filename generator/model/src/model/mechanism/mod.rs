@@ -301,6 +301,9 @@ pub struct Inertia {
 pub struct Load {
     /// what it is
     pub kind: LoadKind,
+    /// whether it has a potential energy: `-m g . r` of gravity, `k s^2/2` of a spring stretched by s. Not where
+    /// minus the gradient of these is another force, and not of forces and torques.
+    pub potential: bool,
     /// where the points or frames are named on which it acts, in the order of its kind
     pub ends: Vec<Span>,
     /// where it is declared
