@@ -177,6 +177,11 @@ pub enum Reason {
     Settling,
     /// A contact with e = 0 stays closed after a collision, and with any larger e it bounces.
     Plastic,
+    /// The forces of the model jump at this time, s.
+    ForceJump {
+        /// s
+        time: f64,
+    },
     /// The modes changed by a cause whose time does not follow from the state.
     ModesChanged,
     /// The mechanism cannot be evaluated.
@@ -184,6 +189,16 @@ pub enum Reason {
     /// The motion that was integrated again differs from the original one by this much, relative to the
     /// state; infinite if its integration took too many steps.
     Inaccurate(f64),
+}
+
+impl Reason {
+    /// From which time on this is the reason: `begun` unless it names its own, s.
+    pub(crate) fn from(self, begun: f64) -> (f64, Self) {
+        match self {
+            Self::ForceJump { time } => (time, self),
+            _ => (begun, self),
+        }
+    }
 }
 
 impl fmt::Display for Undefined {
@@ -226,6 +241,10 @@ impl fmt::Display for Undefined {
             Reason::Plastic => write!(
                 out,
                 "with e = 0 the contact stays closed after its collision, and with any larger e it bounces: take a small e, or leave e out"
+            ),
+            Reason::ForceJump { .. } => write!(
+                out,
+                "forces of the model jump here, as `sign` does, or a spring whose length passes through zero: make them continuous, or ask for derivatives before this time"
             ),
             Reason::ModesChanged => write!(
                 out,

@@ -46,6 +46,7 @@ mod field;
 mod fit;
 mod fit_task;
 mod followed;
+mod force_jumps;
 mod held;
 mod junction;
 mod least_squares;

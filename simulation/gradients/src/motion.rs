@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::collocation::{Collocation, Stages, Stretch};
 use crate::field::{At, Direction, Field, Sampling};
 use crate::followed::{Followed, GradientError, Sample};
+use crate::force_jumps::{Place, jump};
 use crate::junction::{EventDerivatives, Junction, NonDifferentiable};
 use crate::modes::{Mode, ModeKind};
 use crate::{By, Reason, Undefined, closed};
@@ -349,15 +350,15 @@ impl<'m> Propagation<'m> {
         let mut now = part.start;
         for index in samples {
             let time = self.motion.samples[index].time;
-            self.carry((of, part), &modes, (now, time), &mut y).map_err(|why| (now, why))?;
-            agree(&y[..count], &self.motion.samples[index].state).map_err(|why| (now, why))?;
+            self.carry((of, part), &modes, (now, time), &mut y).map_err(|why| why.from(now))?;
+            agree(&y[..count], &self.motion.samples[index].state).map_err(|why| why.from(now))?;
             self.motion.samples[index].derivative = Some(self.matrix(&y[count..]));
             self.keep(|| Piece::Sample(index));
             now = time;
         }
-        self.carry((of, part), &modes, (now, part.end.min(end)), &mut y).map_err(|why| (now, why))?;
+        self.carry((of, part), &modes, (now, part.end.min(end)), &mut y).map_err(|why| why.from(now))?;
         if part.end <= end {
-            agree(&y[..count], &part.last).map_err(|why| (now, why))?;
+            agree(&y[..count], &part.last).map_err(|why| why.from(now))?;
         }
         self.by.copy_from_slice(&y[count..]);
         self.reached.copy_from_slice(&y[..count]);
@@ -451,20 +452,51 @@ impl<'m> Propagation<'m> {
             }
         };
         let (mut now, mut h) = (from, to - from);
+        let mut first: Option<Vec<f64>> = None;
         for _ in 0..most {
             if now >= to {
                 return Ok(());
             }
-            let Some(made) = step(&mut rates, (now, y, None), h, &self.tolerances) else { break };
+            let Some(made) = step(&mut rates, (now, y, first.as_deref()), h, &self.tolerances) else { break };
+            // The sum of steps may miss the end by rounding.
+            let end = if made.h >= to - now { to } else { now + made.h };
+            let mut last = vec![0.0; y.len()];
+            rates(end, &made.end, &mut last);
+            if let Some(time) =
+                self.jumps((part, modes), (now, y, made.first().unwrap_or(&[])), (end, &made.end, &last))
+            {
+                return Err(Reason::ForceJump { time });
+            }
             if let Some(pieces) = &mut pieces {
                 pieces.push(Piece::Step { part: of, t: now, h: made.h, state: y[..count].to_vec() });
             }
-            // The sum of steps may miss the end by rounding.
-            now = if made.h >= to - now { to } else { now + made.h };
+            now = end;
             y.copy_from_slice(&made.end);
             h = made.next.min(to - now);
+            first = Some(last);
         }
         Err(failed.unwrap_or(Reason::Inaccurate(f64::INFINITY)))
+    }
+
+    /// The time at which the rates of the state jump within a step, of which both ends are given by time, state and rates.
+    pub(crate) fn jumps(
+        &self,
+        (part, modes): (&SmoothPart, &[Mode]),
+        (from, before, first): (f64, &[f64], &[f64]),
+        (to, after, last): (f64, &[f64], &[f64]),
+    ) -> Option<f64> {
+        let count = part.first.len();
+        let none = vec![0.0; count * self.field.k];
+        let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
+            let at = At { time, state, ..self.field.at_start(part, &none) };
+            match self.field.mode_rates(modes, &at) {
+                Ok(found) => rates.copy_from_slice(&found.rates),
+                Err(_) => rates.fill(f64::NAN),
+            }
+        };
+        let before = Place { time: from, state: &before[..count], rates: first.get(..count)? };
+        let after = Place { time: to, state: &after[..count], rates: last.get(..count)? };
+        jump(&before, &after, &self.tolerances, &mut rates)
     }
 
     /// The last nanoseconds of slip, along a straight line.

@@ -51,7 +51,9 @@ impl Propagation<'_> {
             match made {
                 Ok(made) if made.error <= 1.0 => {
                     // The sum of steps may miss the end by rounding.
-                    now = if h >= to - now { to } else { now + h };
+                    let end = if h >= to - now { to } else { now + h };
+                    self.no_jump(stretch, (now, y), (end, &made.end))?;
+                    now = end;
                     y.copy_from_slice(&made.end);
                     h = (h * factor).min(to - now);
                     if let Some(pieces) = &mut pieces {
@@ -68,6 +70,27 @@ impl Propagation<'_> {
             }
         }
         Err(why)
+    }
+
+    /// Refuses a step within which the rates of the state jump.
+    fn no_jump(
+        &self,
+        stretch: &Stretch<'_>,
+        before: (f64, &[f64]),
+        after: (f64, &[f64]),
+    ) -> Result<(), Reason> {
+        let rates = |(time, y): (f64, &[f64])| {
+            let state = &y[..stretch.part.first.len()];
+            let none = vec![0.0; state.len() * self.field.k];
+            let at = At { time, state, ..self.field.at_start(stretch.part, &none) };
+            self.field.mode_rates(&stretch.modes, &at).map(|found| found.rates)
+        };
+        let (first, last) = (rates(before)?, rates(after)?);
+        let ends = ((before.0, before.1, &first[..]), (after.0, after.1, &last[..]));
+        match self.jumps((stretch.part, &stretch.modes), ends.0, ends.1) {
+            Some(time) => Err(Reason::ForceJump { time }),
+            None => Ok(()),
+        }
     }
 
     /// Two steps over half the time each, compared with one step.

@@ -73,6 +73,18 @@ fn a_plastic_collision_has_no_derivative_by_e() {
     assert_eq!(by(By::Restitution(None)).undefined.unwrap().reason, Reason::Plastic);
 }
 
+/// The derivative by the place where a force jumps is not that without the jump: from there on there is none.
+#[test]
+fn a_force_that_jumps_ends_the_derivatives() {
+    let mechanism = read("jump.mech");
+    let state = State { time: 0.0, coordinates: &[0.0], speeds: &[4.0], inputs: &[] };
+    let by = [By::named(&mechanism, "a").unwrap(), By::Speed(0)];
+    let found = differentiate(&mechanism, &state, Options::default(), &by, &[0.2, 0.5]).unwrap();
+    let why = found.undefined.unwrap();
+    assert!(matches!(why.reason, Reason::ForceJump { .. }) && (why.time - 0.25).abs() < 1e-9, "{why:?}");
+    assert!(found.samples[0].derivative.is_some() && found.samples[1].derivative.is_none());
+}
+
 /// A ball that only just reaches the plate.
 #[test]
 fn grazing_has_no_derivative() {
