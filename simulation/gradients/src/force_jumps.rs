@@ -27,7 +27,7 @@ pub(crate) fn jump(
     before: &Place<'_>,
     after: &Place<'_>,
     tolerances: &Tolerances,
-    rates: &mut dyn FnMut(f64, &[f64], &mut [f64]),
+    mut rates: impl FnMut(f64, &[f64], &mut [f64]),
 ) -> Option<f64> {
     let count = before.state.len();
     let allowed = |i: usize| {
@@ -71,11 +71,11 @@ mod tests {
 
     fn within(step: f64, rate: impl Fn(f64) -> f64) -> Option<f64> {
         let tolerances = Tolerances { relative: 1e-12, absolute: 1e-12 };
-        let mut rates = |_: f64, y: &[f64], rates: &mut [f64]| rates[0] = rate(y[0]);
+        let rates = |_: f64, y: &[f64], rates: &mut [f64]| rates[0] = rate(y[0]);
         let ends = [1.0 - 0.3 * step, 1.0 + 0.7 * step];
         let of = ends.map(&rate);
         let place = |i: usize| Place { time: ends[i], state: &ends[i..=i], rates: &of[i..=i] };
-        jump(&place(0), &place(1), &tolerances, &mut rates)
+        jump(&place(0), &place(1), &tolerances, rates)
     }
 
     #[test]

@@ -487,7 +487,7 @@ impl<'m> Propagation<'m> {
     ) -> Option<f64> {
         let count = part.first.len();
         let none = vec![0.0; count * self.field.k];
-        let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
+        let rates = |time: f64, state: &[f64], rates: &mut [f64]| {
             let at = At { time, state, ..self.field.at_start(part, &none) };
             match self.field.mode_rates(modes, &at) {
                 Ok(found) => rates.copy_from_slice(&found.rates),
@@ -496,7 +496,7 @@ impl<'m> Propagation<'m> {
         };
         let before = Place { time: from, state: &before[..count], rates: first.get(..count)? };
         let after = Place { time: to, state: &after[..count], rates: last.get(..count)? };
-        jump(&before, &after, &self.tolerances, &mut rates)
+        jump(&before, &after, &self.tolerances, rates)
     }
 
     /// The last nanoseconds of slip, along a straight line.
