@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use crate::common::root;
 
 /// Packages whose tests are one program, and their folders.
-const PACKAGES: [(&str, &str); 8] = [
+const PACKAGES: [(&str, &str); 9] = [
     ("hodograph", "runtime"),
     ("hodograph-simulation", "simulation"),
     ("hodograph-gradients", "simulation/gradients"),
     ("hodograph-fmu", "bindings/fmu"),
     ("hodograph-generator", "generator"),
+    ("hodograph-derive", "generator/derive"),
     ("hodograph-cli", "generator/cli"),
     ("hodograph-tests", "tests"),
     // a workspace of its own
