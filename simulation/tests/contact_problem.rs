@@ -3,8 +3,8 @@
 use crate::contact_families::{Contacts, FAMILIES, problem};
 use hodograph_random::Random;
 use hodograph_simulation::contact_problem::{
-    Impossible, Mode, Problem, Solutions, Unsolved, another, certificate, enumerate, rest, solve, with_modes,
-    with_modes_near,
+    Impossible, Mode, Problem, Solutions, Unsolved, another, certificate, enumerate, natural_residual, rest,
+    solve, with_modes, with_modes_near,
 };
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -386,4 +386,46 @@ fn impacts_are_the_same_problem() {
     }
     let unchanged = certificate(&of(&made), &DVector::zeros(12)).unwrap();
     assert!(unchanged.greatest() > 0.1);
+}
+
+/// A contact that only one motion of the bodies reaches, and prescribed motion that asks for others: often there are no forces.
+/// Forces of 1e16 that cancel each other were given, since what they left was rounding of their terms; now the answer is none,
+/// in every unit.
+#[test]
+fn forces_that_cancel_are_no_answer() {
+    let single = |along: [f64; 3], beta: [f64; 3], mu: f64, (mobility, rate): (f64, f64)| {
+        let a = DVector::from_column_slice(&along);
+        Contacts {
+            w: &a * a.transpose() * mobility,
+            beta: DVector::from_column_slice(&beta) * rate,
+            mu: vec![mu],
+            slip: vec![None],
+        }
+    };
+    for unit in [1e-9, 1.0, 1e3, 1e12] {
+        for units in [(unit, 1.0), (1.0, unit)] {
+            let made = single([1.0, -1.0, 0.0], [-1.0, -1.0, 0.0], 1.5, units);
+            assert!(solve(&of(&made), None).is_err(), "{units:?}");
+        }
+    }
+    let mut random = Random::new(77);
+    let (mut solved, mut refused) = (0, 0);
+    for number in 0..500 {
+        let mut three = || [(); 3].map(|()| random.number());
+        let (along, beta) = (three(), three());
+        let made = single(along, beta, 0.2 + 1.5 * random.number().abs(), (1.0, 1.0));
+        match solve(&of(&made), None) {
+            Ok(found) => {
+                let left = natural_residual(&of(&made), &found.force);
+                assert!(
+                    left <= 1e-9 && found.force.amax() < 1e9 * made.beta.amax(),
+                    "{number}: {left} {found:?}"
+                );
+                solved += 1;
+            }
+            Err(Unsolved::Jam { .. } | Unsolved::NotFound { .. }) => refused += 1,
+            Err(other) => panic!("{number}: {other:?}"),
+        }
+    }
+    assert!(solved > 100 && refused > 20, "{solved} {refused}");
 }

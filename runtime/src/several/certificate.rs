@@ -5,18 +5,20 @@
 use super::scaled::{Scaled, three};
 use crate::{
     Scalar,
-    scalar::{larger, smaller},
+    scalar::{constant, larger, smaller},
 };
 
 /// The greatest violation of each law over all contacts, relative to its terms: accelerations beside
-/// sum |W_ij lambda_j| + |beta_i|, forces beside these over tr(W_ii) and beside the force itself.
+/// sum |W_ij lambda_j| + |beta_i|, forces beside these over tr(W_ii) and beside the force itself. Terms count as at most
+/// 0.01 eps^(-1/2) times the greatest beta (7e5 times in doubles): forces that only cancel each other leave nothing but
+/// rounding of what beta asks for, and are no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 #[non_exhaustive]
 pub struct Certificate<T> {
-    /// -a_n where it is positive: bodies that approach each other.
+    /// -a_n where it is positive: bodies that approach each other; and what the rounding of great terms leaves unknown.
     pub approach: T,
     /// -lambda_n where it is positive: a contact that pulls.
     pub pull: T,
@@ -49,6 +51,9 @@ fn larger_or_nan<T: Scalar>(a: T, b: T) -> T {
     if !a.is_finite() || b <= a { a } else { b }
 }
 
+/// Terms count as at most this many times the greatest beta over eps^(1/2).
+const MOST_TERMS: f64 = 0.01;
+
 /// The certificate of forces `x` with accelerations `v` and their terms.
 pub(super) fn certificate<T: Scalar>(
     scaled: &Scaled<'_, T>,
@@ -58,15 +63,24 @@ pub(super) fn certificate<T: Scalar>(
 ) -> Certificate<T> {
     let zero = T::zero();
     let mut worst = Certificate::none();
+    let free = scaled.beta.iter().fold(zero, |free, beta| larger(free, beta.abs()));
+    // Without beta forces that cancel each other move nothing, whatever their size.
+    let most = (!free.is_zero()).then(|| free * constant(MOST_TERMS) / T::default_epsilon().sqrt());
+    let bounded = |terms: T| most.map_or(terms, |most| smaller(terms, most));
     for i in 0..scaled.contacts() {
         let (law, x, v, terms) = (scaled.law(i), three(x, i), three(v, i), three(terms, i));
-        let rate = larger(terms.x, larger(terms.y, terms.z));
-        let force = rate + x.norm();
+        let terms = larger(terms.x, larger(terms.y, terms.z));
+        let rate = bounded(terms);
+        let force = rate + bounded(x.norm());
         if force.is_zero() {
             continue;
         }
         let note = |worst: &mut T, value: T| *worst = larger_or_nan(*worst, value);
         note(&mut worst.pull, -x.x / force);
+        // Accelerations are known up to the rounding of their terms.
+        if terms > rate {
+            note(&mut worst.approach, T::default_epsilon() * terms / rate);
+        }
         // Without terms there is no acceleration.
         if !rate.is_zero() {
             note(&mut worst.approach, -v.x / rate);

@@ -191,7 +191,14 @@ pub enum Reason {
     Inaccurate(f64),
 }
 
+/// The reason why there is no derivative, and its contact.
+pub(crate) type NonDifferentiable = (Option<usize>, Reason);
+
 impl Reason {
+    pub(crate) fn is_jump(&self) -> bool {
+        matches!(self, Self::ForceJump { .. })
+    }
+
     /// From which time on this is the reason: `begun` unless it names its own, s.
     pub(crate) fn from(self, begun: f64) -> (f64, Self) {
         match self {

@@ -6,18 +6,16 @@
 use hodograph::{ComponentKind, Contacts, Mechanism, State};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{ContactPhase, Simulation};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::Reason;
 use crate::field::{At, Field};
-use crate::transposed::{Place, TransposedField};
+use crate::gaps::{gaps, least};
 
 /// A contact is meant to be closed if its gap is this part of the greatest coordinate at most.
 const CLOSED: f64 = 1e-6;
 /// Largest number of Newton steps.
 const STEPS: usize = 8;
-/// Singular values below this part of the greatest count as zero.
-const SINGULAR: f64 = 1e-9;
 
 /// The contacts that are closed in a start state, or meant to be.
 #[derive(Clone, Debug)]
@@ -116,33 +114,6 @@ impl Closed {
         }
         Ok(())
     }
-}
-
-/// The gaps of these contacts, and their derivatives by the coordinates (a row each).
-pub(crate) fn gaps(
-    mechanism: &InterpretedMechanism,
-    contacts: &[usize],
-    state: &State<'_>,
-) -> Result<(DVector<f64>, DMatrix<f64>), Reason> {
-    let field = Field::new(mechanism, Vec::new(), Vec::new(), None);
-    let mut field = TransposedField::new(&field);
-    let all = [state.coordinates, state.speeds].concat();
-    let place = Place { time: state.time, state: &all, inputs: state.inputs, row: 0 };
-    let n = state.coordinates.len();
-    let (mut values, mut by) = (DVector::zeros(contacts.len()), DMatrix::zeros(contacts.len(), n));
-    for (row, &contact) in contacts.iter().enumerate() {
-        let (gap, own) = field.gap(contact, &place)?;
-        values[row] = gap;
-        by.row_mut(row).copy_from_slice(&own);
-    }
-    Ok((values, by))
-}
-
-/// The least change of coordinates that changes the gaps by these amounts.
-pub(crate) fn least(by: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let decomposed = by.clone().svd(true, true);
-    let least = SINGULAR * decomposed.singular_values.max();
-    decomposed.solve(change, least).ok()
 }
 
 /// Moves coordinates so that these contacts are closed.

@@ -12,9 +12,9 @@ use hodograph_simulation::{Guard, SmoothPart};
 use nalgebra::{DMatrix, DVector};
 
 use crate::Reason;
-use crate::closed::{gaps, least};
+use crate::by::NonDifferentiable;
 use crate::field::Field;
-use crate::junction::{NEGLIGIBLE, NonDifferentiable, SPEED_AGREEMENT};
+use crate::gaps::{gaps, least};
 use crate::modes::{Mode, ModeKind};
 
 /// The plastic impact and that of the motion differ by at most this many times their terms.
@@ -22,6 +22,11 @@ const JUMP: f64 = 10.0;
 /// The derivatives of the gaps that are left when bounces end change those of the coordinates by at most this part of their
 /// terms.
 const LEFT_OPEN: f64 = 1e-8;
+
+/// The computed speeds after a collision must agree with those of the motion to this part of the greatest.
+pub(crate) const SPEED_AGREEMENT: f64 = 1e-8;
+/// A change below this part of its terms counts as zero.
+pub(crate) const NEGLIGIBLE: f64 = 1e-12;
 
 /// Contacts that begin to last, or to stick, at an event.
 #[derive(Clone, Debug)]

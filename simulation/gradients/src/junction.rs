@@ -10,8 +10,9 @@ use hodograph_simulation::{CollisionRecord, Event, EventKind, Guard, SmoothPart}
 use nalgebra::{SMatrix, SVector, Vector3};
 
 use crate::Reason;
+use crate::by::NonDifferentiable;
 use crate::field::{At, ContactTerms, Field};
-use crate::held::{Held, settles};
+use crate::held::{Held, NEGLIGIBLE, SPEED_AGREEMENT, settles};
 use crate::modes::{Mode, ModeKind};
 
 /// A gap closes without normal velocity if its rate is below this part of the terms of the normal velocity.
@@ -25,13 +26,6 @@ const TRANSVERSE_SLIP: f64 = 1e-5;
 /// The terms of a derivative by a parameter count as no smaller than this part of what is differentiated, over the parameter:
 /// where a mass cancels, the derivative and its terms are both rounding.
 const NOTHING: f64 = 1e-9;
-/// The computed speeds after a collision must agree with those of the motion to this part of the greatest.
-pub(crate) const SPEED_AGREEMENT: f64 = 1e-8;
-/// A change below this part of its terms counts as zero.
-pub(crate) const NEGLIGIBLE: f64 = 1e-12;
-
-/// The reason why there is no derivative, and its contact.
-pub(crate) type NonDifferentiable = (Option<usize>, Reason);
 
 /// The derivatives at the events at one time.
 pub(crate) struct EventDerivatives {

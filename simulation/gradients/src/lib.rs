@@ -47,6 +47,7 @@ mod fit;
 mod fit_task;
 mod followed;
 mod force_jumps;
+mod gaps;
 mod held;
 mod junction;
 mod least_squares;

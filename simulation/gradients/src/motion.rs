@@ -11,11 +11,12 @@ use hodograph_simulation::stepper::{Tolerances, step};
 use hodograph_simulation::{Event, EventKind, Guard, Options, SmoothPart};
 use nalgebra::{DMatrix, DVector};
 
+use crate::by::NonDifferentiable;
 use crate::collocation::{Collocation, Stages, Stretch};
 use crate::field::{At, Direction, Field, Sampling};
 use crate::followed::{Followed, GradientError, Sample};
 use crate::force_jumps::{Place, jump};
-use crate::junction::{EventDerivatives, Junction, NonDifferentiable};
+use crate::junction::{EventDerivatives, Junction};
 use crate::modes::{Mode, ModeKind};
 use crate::{By, Reason, Undefined, closed};
 
@@ -406,11 +407,13 @@ impl<'m> Propagation<'m> {
         let may_be_stiff = modes.iter().any(rubs);
         let most = if may_be_stiff { FEW_STEPS } else { MAX_STEPS };
         let mut done = self.steps((of, part), modes, (from, to), y, (most, pieces.as_mut()));
-        if may_be_stiff && done.is_err() {
+        // No other steps pass a jump.
+        let failed = |done: &Result<(), Reason>| matches!(done, Err(why) if !why.is_jump());
+        if may_be_stiff && failed(&done) {
             return_to_start(y, &mut pieces);
             done = Stretch::new(&self.field, part, modes, &self.tolerances)
                 .and_then(|stretch| self.collocate((of, &stretch), (from, to), y, pieces.as_mut()));
-            if done.is_err() {
+            if failed(&done) {
                 return_to_start(y, &mut pieces);
                 done = self.steps((of, part), modes, (from, to), y, (MAX_STEPS, pieces.as_mut()));
             }

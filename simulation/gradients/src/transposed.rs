@@ -14,7 +14,6 @@ use crate::field::{ContactTerms, Field, RoutineKey, failed};
 use crate::held::Held;
 use crate::junction::{ENTRIES, Junction, Struck};
 use crate::modes::{Balance, Mode, Slip};
-
 use crate::{By, Reason};
 
 /// A state without derivatives.
@@ -266,17 +265,6 @@ impl<'f> TransposedField<'f> {
             }
         }
         Ok(())
-    }
-
-    /// A gap, and its derivatives by the coordinates.
-    pub fn gap(&mut self, contact: usize, place: &Place<'_>) -> Result<(f64, Vec<f64>), Reason> {
-        let evaluated = self.evaluate(RoutineKey::Gap(contact), place).map_err(Reason::State)?;
-        let gap = evaluated.values.first().copied();
-        let gap = gap.ok_or(Reason::State(StateError::Undefined { what: "gap of this contact" }))?;
-        let mut by = ByState::none(self.field);
-        self.transpose(&evaluated, &[1.0], &mut by);
-        by.state.truncate(self.field.n);
-        Ok((gap, by.state))
     }
 
     /// The derivatives of the function that ended a part, times a factor.
