@@ -127,3 +127,29 @@ fn numbers_decide_where_symbols_do_not() {
     assert_eq!(found(&scotch("q1*u1/sqrt(1 + q1^2)")), []);
     assert_eq!(found(&scotch("1.1*q1*u1/sqrt(1 + q1^2)")), [("E078", BY_NUMBERS)]);
 }
+
+/// A four-bar linkage in a plane that leans. Its start closes the loop up to rounding, along all three axes; rounding is no
+/// equation.
+#[test]
+fn a_loop_in_a_tilted_plane_may_be_closed_from_the_start() {
+    let linkage = |turn: &str, q2: &str| {
+        format!(
+            "mechanism Tilted;\n\
+            parameters {{ m: kg = 1, l1: m = 0.3, l2: m = 0.8, l3: m = 0.6, d: m = 0.9, g: m/s^2 = 9.81 }}\n\
+            coordinates {{ q1: rad = 1.5472, dependent q2: rad = {q2}, dependent q3: rad = 1.8139138124924439 }}\n\
+            speeds {{ u1: rad/s = 1 }}\n\
+            dependent {{ u2: rad/s, u3: rad/s }}\n\
+            frames {{ W = N.rotate({turn}); A = W.rotate(z, q1); B = W.rotate(z, q2); C = W.rotate(z, q3); }}\n\
+            points {{ P = O + l1*A.x; E1 = P + l2*B.x; E2 = O + d*W.x + l3*C.x; }}\n\
+            particles {{ One {{ point: P, mass: m }}, Two {{ point: E1, mass: m }} }}\n\
+            loads {{ gravity: -g*W.y; }}\n\
+            constraints {{ velocity(E1) = velocity(E2); }}\n\
+            configuration {{ position(E1) = position(E2); }}\n"
+        )
+    };
+    for turn in ["x, 0.3", "[0.36, 0.48, 0.8], 0.7", "y, -1.1", "[0.6, 0, 0.8], 2"] {
+        for q2 in ["0.3608274909496134", "0.3608", "0.4"] {
+            assert_eq!(found(&linkage(turn, q2)), [], "{turn} {q2}");
+        }
+    }
+}

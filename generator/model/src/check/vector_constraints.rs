@@ -107,6 +107,8 @@ pub fn turned(rows: &[Vec<f64>], axes: &[[f64; 3]; 3]) -> Vec<Vec<f64>> {
 /// How many of the rows are not 0 at all states.
 pub fn components(at: &[Vec<Vec<f64>>]) -> usize {
     let count = at.first().map_or(0, Vec::len);
-    let there = |i: usize| at.iter().any(|rows| rows[i].iter().any(|c| c.abs() > NOISE * size(rows)));
+    // At a state that satisfies an equation its residual is rounding, along all axes.
+    let noise = NOISE * at.iter().map(|rows| size(rows)).fold(0.0, f64::max);
+    let there = |i: usize| at.iter().any(|rows| rows[i].iter().any(|c| c.abs() > noise));
     (0..count).filter(|&i| there(i)).count()
 }
