@@ -5,7 +5,7 @@ use crate::common::{Body, Line, Part, collisions, first, names, run, start, surf
 use ball_on_lift::BallOnLift;
 use bead_on_sphere::BeadOnSphere;
 use hodograph::{Law, Mechanism};
-use hodograph_simulation::{ContactPhase, Options};
+use hodograph_simulation::{ContactLaw, ContactPhase, Options, Sliding};
 use puck_on_incline::PuckOnIncline;
 
 hodograph::mechanism!("tests/models/ball_on_lift.mech");
@@ -106,29 +106,46 @@ fn what_rounding_hides_is_an_error() {
     assert_eq!((error.kind.name(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
 }
 
-/// All the bounces of a body that slides: the impulse of friction is mu times the normal one, which is known
-/// from the first approach and the weight.
+/// All the bounces of a body that slides: the impulse of friction is that of impacts times the normal one, which is
+/// known from the first approach and the weight, whatever the friction of lasting contact is.
 #[test]
 fn momentum_over_a_chatter() {
-    let (m, r, mu) = (0.4, 0.11, 0.15);
-    for e in [0.3, 0.6, 0.9] {
-        let body = Body::new(m, 0.4 * m * r * r, &[Line::floor(Part::Rim(r))]);
-        let (vx, w, h) = (20.0, 5.0, 0.05);
-        let mut simulation = start(&body, &[0.0, r + h, 0.0], &[vx, 0.0, w], surface(mu, e, Law::Stronge));
-        let events = run(&mut simulation, 2.2);
-        let v0 = (2.0 * G * h).sqrt();
-        let chatter = 2.0 * e * v0 / (G * (1.0 - e));
-        let contact = first(&events, "contact");
-        assert!((contact.time - (v0 / G + chatter)).abs() < 1e-10, "{e}: {}", contact.time);
-        // From the first touch to the end: momentum up, m v0 and the weight.
-        let normal = v0 + G * chatter;
-        let expected = [vx - mu * normal, 0.0, w - mu * normal * r * m / (0.4 * m * r * r)];
-        for (speed, expected) in contact.speeds.iter().zip(expected) {
-            assert!(
-                (speed - expected).abs() < 1e-10 * (1.0 + expected.abs()),
-                "{e}: {:?} {expected:?}",
-                contact.speeds
-            );
+    let (m, r) = (0.4, 0.11);
+    let laws = [
+        (0.15, 0.15, None),
+        (0.3, 0.15, Some(ContactLaw { mu_impact: Some(0.15), ..ContactLaw::default() })),
+        (0.0, 0.15, Some(ContactLaw { mu_impact: Some(0.15), ..ContactLaw::default() })),
+        (
+            0.15,
+            0.15,
+            Some(ContactLaw {
+                mu_static: Some(0.6),
+                sliding: Sliding::Stribeck { speed: 30.0 },
+                ..ContactLaw::default()
+            }),
+        ),
+    ];
+    for (mu, in_impacts, law) in laws {
+        for e in [0.3, 0.6, 0.9] {
+            let body = Body::new(m, 0.4 * m * r * r, &[Line::floor(Part::Rim(r))]);
+            let (vx, w, h) = (20.0, 5.0, 0.05);
+            let options = Options { law: law.clone(), ..surface(mu, e, Law::Stronge) };
+            let mut simulation = start(&body, &[0.0, r + h, 0.0], &[vx, 0.0, w], options);
+            let events = run(&mut simulation, 2.2);
+            let v0 = (2.0 * G * h).sqrt();
+            let chatter = 2.0 * e * v0 / (G * (1.0 - e));
+            let contact = first(&events, "contact");
+            assert!((contact.time - (v0 / G + chatter)).abs() < 1e-10, "{e}: {}", contact.time);
+            // From the first touch to the end: momentum up, m v0 and the weight.
+            let friction = in_impacts * (v0 + G * chatter);
+            let expected = [vx - friction, 0.0, w - friction * r * m / (0.4 * m * r * r)];
+            for (speed, expected) in contact.speeds.iter().zip(expected) {
+                assert!(
+                    (speed - expected).abs() < 1e-10 * (1.0 + expected.abs()),
+                    "{mu} {e}: {:?} {expected:?}",
+                    contact.speeds
+                );
+            }
         }
     }
 }

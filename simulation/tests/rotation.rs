@@ -6,7 +6,9 @@ use crate::common::{first, run};
 use hodograph::{Contacts, Law, State, Surface};
 use hodograph_random::Random;
 use hodograph_simulation::contact_problem::{Mode, Problem, solve, with_modes};
-use hodograph_simulation::{ContactLaw, ContactPhase, Drive, ErrorKind, Event, Options, Simulation};
+use hodograph_simulation::{
+    ContactLaw, ContactPhase, Drive, ErrorKind, Event, EventKind, Options, Simulation,
+};
 use nalgebra::{DMatrix, DVector};
 use rolling_ball::RollingBall;
 use rolling_cart::RollingCart;
@@ -91,6 +93,26 @@ fn a_rolling_ball_stops() {
         assert!(run(&mut simulation, 1e5).is_empty());
         assert_eq!(simulation.coordinates(), q);
     }
+}
+
+/// Impacts have no torques, and bounces lower than any tolerance are impacts: a ball that bounces to its end keeps its
+/// spin, and what rolls it is friction alone.
+#[test]
+fn torques_begin_when_bounces_have_ended() {
+    let [m, r, j] = BALL;
+    let (mu, e, v, along, spin) = (0.1, 0.4, 1.0, 3.0, 3.0);
+    let body = ball(|_| {});
+    let mut simulation = begin(&body, &[along, 0.0, v, 0.0, 0.0, spin], options(mu, 0.01, 0.01));
+    let events = run(&mut simulation, 0.44);
+    let contact = first(&events, "contact");
+    let chatter = 2.0 * e * v / (G * (1.0 - e));
+    near("time", contact.time, 2.0 * v / G + chatter, 1e-10);
+    let friction = mu * (v + G * chatter);
+    near("along", contact.speeds[0], along - friction, 1e-11);
+    near("about the axis across", contact.speeds[4], friction * r * m / j, 1e-9);
+    near("spin", contact.speeds[5], spin, 1e-11);
+    let left = simulation.time() - contact.time;
+    near("spin at the end", simulation.speeds()[5], spin - 0.01 * m * G / j * left, 1e-9);
 }
 
 /// A ball lies on an incline while tan(angle) <= rolling / r, and rolls down beyond.
@@ -187,7 +209,22 @@ fn torques_that_grow_begin_to_turn_a_ball() {
         let inertia = if input == 0 { j } else { j + m * r * r };
         let rate = if input == 0 { simulation.speeds()[5] } else { simulation.speeds()[3] };
         near("rate", rate, 0.5 * grows * 4.0 / inertia, 1e-9);
+        if let EventKind::Roll { along, .. } = first(&events, name).kind {
+            assert_eq!(along, [1.0, 0.0, 0.0]);
+        }
     }
+    // The torque about N.x moves the lowest point along N.y, where friction does not hold it.
+    let drive = move |t: f64, _: &[f64], _: &[f64], inputs: &mut [f64]| inputs[1] = t;
+    let options = Options { drive: Drive::Continuous(Arc::new(drive)), ..options(0.001, 0.0, 0.0) };
+    let mut simulation = begin(&body, &[0.0; 6], options);
+    let events = run(&mut simulation, 0.1);
+    assert_eq!(kinds(&events), ["slip"]);
+    let EventKind::Slip { along, direction, .. } = first(&events, "slip").kind else { unreachable!() };
+    let apart = along.iter().zip([0.0, 1.0, 0.0]).map(|(along, exact)| f64::abs(along - exact)).sum::<f64>();
+    assert!(
+        apart < 1e-12 && (direction[0].hypot(direction[1]) - 1.0).abs() < 1e-12,
+        "{along:?} {direction:?}"
+    );
 }
 
 /// A cart on two wheels slows down with (rolling / r) g m / (m + 2 J / r^2), however its wheels share the load, and

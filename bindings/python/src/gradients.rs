@@ -357,31 +357,18 @@ pub fn fit<'py>(
     choices: Choices,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (mechanism, options, by) = compared(py, machine, states, &fitted.variables, choices)?;
-    let mut trajectories = trajectories(&fitted.trajectories);
+    let trajectories = trajectories(&fitted.trajectories);
     let failed = |error: FitError| match error {
         FitError::BadRequest(message) => argument(py, &message),
         error => errors::error(py, "SimulationError", &error.to_string(), "not_fitted", None, None),
     };
-    let starts = PyDict::new(py);
-    if let Some(flight) = fitted.flight {
-        for trajectory in &mut trajectories {
-            let measured = (&fitted.measured[..], &fitted.units[..]);
-            let found = hodograph_gradients::fit_start(mechanism, &options, measured, trajectory, flight);
-            let found = found.map_err(failed)?;
-            let covariance = matrix(py, &found.covariance)?;
-            starts.set_item(
-                &trajectory.name,
-                (found.trajectory.state.clone(), found.errors, covariance, found.rms),
-            )?;
-            *trajectory = found.trajectory;
-        }
-    }
     let task = FitTask {
         trajectories: &trajectories,
         measured: &fitted.measured,
         units: &fitted.units,
         variables: &by,
         loss: fitted.huber.map(Loss::Huber).or(fitted.cap.map(Loss::Cap)).unwrap_or_default(),
+        flight: fitted.flight,
         horizons: &fitted.horizons,
         starts: fitted.starts,
         bootstrap: fitted.bootstrap,
@@ -397,6 +384,12 @@ pub fn fit<'py>(
         values, surfaces, rms, differences, errors, correlations, undetermined, spread, minima, ..
     } = &found;
     let all = PyDict::new(py);
+    let starts = PyDict::new(py);
+    for start in &found.starts {
+        let covariance = matrix(py, &start.covariance)?;
+        let Trajectory { name, state, .. } = &start.trajectory;
+        starts.set_item(name, (state.clone(), start.errors.clone(), covariance, start.rms))?;
+    }
     all.set_item("starts", starts)?;
     all.set_item("minima", minima.clone())?;
     all.set_item("values", PyArray1::from_slice(py, values))?;

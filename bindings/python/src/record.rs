@@ -208,8 +208,8 @@ impl Record {
         let contact = |contact: usize| self.kept.contacts.get(contact).map(String::as_str);
         let numbers = |numbers: &[f64]| PyArray1::from_slice(py, numbers);
         for (event, name) in self.kept.events.iter().zip(&self.kept.names) {
-            let (mut impulse, mut energy, mut before, mut mode, mut direction) =
-                (None, None, None, None, None);
+            let (mut impulse, mut energy, mut before, mut mode, mut directions) =
+                (None, None, None, None, (None, None));
             let shares = PyList::empty(py);
             match &event.kind {
                 EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
@@ -232,15 +232,16 @@ impl Record {
                     }
                 }
                 EventKind::Contact { mode: touching, .. } => mode = Some(touching.name()),
-                EventKind::Slip { direction: along, .. } | EventKind::Roll { direction: along, .. } => {
-                    direction = Some(numbers(along));
+                EventKind::Slip { direction, along, .. } | EventKind::Roll { direction, along, .. } => {
+                    directions = (Some(numbers(direction)), Some(numbers(along)));
                 }
                 _ => {}
             }
             let (q, u) = (numbers(&event.coordinates), numbers(&event.speeds));
             let selected = event.kind.selection().map(selection);
             let first = (event.time, name, event.contact.and_then(contact), q, u);
-            let then = (impulse, energy, before, mode, direction, selected, shares);
+            let (direction, along) = directions;
+            let then = (impulse, energy, before, mode, direction, along, selected, shares);
             all.append((first, then))?;
         }
         Ok(all)

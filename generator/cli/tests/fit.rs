@@ -83,6 +83,13 @@ fn starts_are_fitted_to_flight() {
     for start in answer["start_states"].as_array().unwrap() {
         assert!(number(&start["u"]["u"]).abs() < 1e-9 && number(&start["errors"]["u"]) < 1e-9, "{start}");
     }
+    // Gravity decides what the flight tells: both are found.
+    let both = fit(&drops(), &["--parameters", "g,e", "--state", "u=0.3", "--flight", "0.1"]);
+    assert_eq!(both.code, 0, "{}", both.stderr);
+    let answer = both.line();
+    for (name, value) in [("g", 9.7), ("e", 0.8)] {
+        assert!((number(&answer["values"][name]) - value).abs() < 1e-7, "{answer}");
+    }
     let long = fit(&drops(), &[&more[..], &["--flight", "0.3"]].concat());
     assert!(long.code == 2 && long.stderr.contains("shorter flight"), "{}", long.stderr);
 }
@@ -153,6 +160,7 @@ fn data_that_are_wrong_are_refused_at_their_place() {
         ("z\n0.1\n0.09\n", "no column `t`"),
         ("t,z\n0,0.1\n", "one row"),
         ("t,z,z\n0,0.1,0.1\n", "occurs twice"),
+        ("t,z\n0,0.1\n0.1\n", "line 3: it has 1 cells, and the head 2"),
         ("t\n0\n1\n", "no column holds"),
         ("trajectory,t,z\na,0,0.1\na,0.1,0.1\nb,0,0.1\nb,0.1,0.1\na,0,0.1\n", "has rows in two places"),
         (
@@ -164,6 +172,8 @@ fn data_that_are_wrong_are_refused_at_their_place() {
         assert_eq!(run.code, 2, "{data}: {}", run.stderr);
         assert!(run.stderr.contains(words), "{data}: {}", run.stderr);
     }
+    let run = fit(&drops(), &["--parameters", "e,e.table"]);
+    assert!(run.code == 2 && run.stderr.contains("e of all contacts and of one of them"), "{}", run.stderr);
     let run = fit(&drops(), &["--parameters", "e", "--error", "u=0.1"]);
     assert!(run.code == 2 && run.stderr.contains("no column `u`"), "{}", run.stderr);
 }

@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 use crate::family::{resolve_surfaces, value_of};
 use crate::fit_task::{FitError, FitTask};
 use crate::least_squares::{Differences, Problem};
+use crate::start_state::{FittedStart, fit_start, start_by};
 use crate::trajectory::Trajectory;
 use crate::{By, Loss};
 
@@ -42,6 +43,8 @@ pub struct Fit {
     pub without_derivatives: Vec<String>,
     /// number of steps
     pub steps: usize,
+    /// the start states that were fitted, with these values; none without a flight
+    pub starts: Vec<FittedStart>,
 }
 
 /// Largest number of steps of the Levenberg-Marquardt method, and of those for a bootstrap sample, which
@@ -60,10 +63,18 @@ const UNDETERMINED: f64 = 1e-8;
 /// [`FitError`]
 pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'_>) -> Result<Fit, FitError> {
     check(mechanism, task)?;
-    let problem = Problem { mechanism, options, task, loss: task.loss };
     let first: Result<Vec<f64>, String> =
         task.variables.iter().map(|&by| value_of(mechanism, options, by)).collect();
     let first = first.map_err(FitError::BadRequest)?;
+    // Start states that depend on no variable are fitted once.
+    let known = starts_that_stay(mechanism, options, task)?;
+    let trajectories: Vec<Trajectory> =
+        known.iter().flatten().map(|start| start.trajectory.clone()).collect();
+    let task = &match known {
+        Some(_) => FitTask { trajectories: &trajectories, flight: None, ..task.clone() },
+        None => task.clone(),
+    };
+    let problem = Problem { mechanism, options, task, loss: task.loss };
     let mut found = vec![descend(&problem, first.clone())?];
     let mut random = task.seed;
     for _ in 1..task.starts {
@@ -111,7 +122,12 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
         if product > 0.0 { covariance[(row, column)] / product } else { f64::from(u8::from(row == column)) }
     });
     let spread = if task.bootstrap == 0 { None } else { Some(bootstrap_spread(&problem, &values)?) };
-    let (_, mut fitted) = problem.at(&values).map_err(FitError::BadRequest)?;
+    let (there, mut fitted) = problem.at(&values).map_err(FitError::BadRequest)?;
+    let starts = match (known, task.flight) {
+        (Some(starts), _) => starts,
+        (None, Some(flight)) => fit_starts(&there, &fitted, task, flight)?,
+        (None, None) => Vec::new(),
+    };
     resolve_surfaces(mechanism, &mut fitted);
     Ok(Fit {
         surfaces: fitted.surfaces,
@@ -125,8 +141,38 @@ pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'
         spread,
         without_derivatives: here.without,
         steps,
+        starts,
         values,
     })
+}
+
+/// The start states of all motions with this mechanism.
+fn fit_starts(
+    mechanism: &InterpretedMechanism,
+    options: &Options,
+    task: &FitTask<'_>,
+    flight: f64,
+) -> Result<Vec<FittedStart>, FitError> {
+    let measure = (task.measured, task.units);
+    task.trajectories.iter().map(|one| fit_start(mechanism, options, measure, one, flight)).collect()
+}
+
+/// The start states that are fitted, if none of them depends on a variable, as on friction and restitution in flight.
+fn starts_that_stay(
+    mechanism: &InterpretedMechanism,
+    options: &Options,
+    task: &FitTask<'_>,
+) -> Result<Option<Vec<FittedStart>>, FitError> {
+    let Some(flight) = task.flight else { return Ok(None) };
+    let starts = fit_starts(mechanism, options, task, flight)?;
+    let measure = (task.measured, task.units);
+    for (given, start) in task.trajectories.iter().zip(&starts) {
+        let by = start_by(mechanism, options, measure, (given, start), flight, task.variables)?;
+        if by.iter().any(|by| *by != 0.0) {
+            return Ok(None);
+        }
+    }
+    Ok(Some(starts))
 }
 
 fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), FitError> {
@@ -151,6 +197,25 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
         || !task.horizons.windows(2).all(rise)
     {
         return bad("horizons must be positive and rise".to_owned());
+    }
+    if let Some(twice) = task.variables.iter().enumerate().find_map(|(place, by)| {
+        let overlaps = |other: &&By| match (by, other) {
+            (By::Friction(one), By::Friction(other)) | (By::Restitution(one), By::Restitution(other)) => {
+                one.is_none() || other.is_none() || one == other
+            }
+            (by, other) => by == *other,
+        };
+        task.variables[..place].iter().find(overlaps)
+    }) {
+        let what = match twice {
+            By::Friction(_) => "mu of all contacts and of one of them, or of one twice",
+            By::Restitution(_) => "e of all contacts and of one of them, or of one twice",
+            _ => "a parameter twice",
+        };
+        return bad(format!("it would fit {what}: name each value once"));
+    }
+    if task.flight.is_some_and(|flight| flight.is_nan() || flight <= 0.0) {
+        return bad("the duration of the flight must be positive".to_owned());
     }
     if task.starts == 0 {
         return bad("a fit has at least one start".to_owned());

@@ -17,6 +17,9 @@ pub struct FitTask<'a> {
     pub variables: &'a [By],
     /// what a difference costs
     pub loss: Loss,
+    /// duration from the start of each motion, s, within which nothing is struck: its start state is fitted to the first row
+    /// and to the samples within it, with the values that are tried; `None` takes the first row as it is
+    pub flight: Option<f64>,
     /// durations from the start, s, increasing: the values are fitted to the samples within the first one, then from there to
     /// those within the next one, and so on, at last to all
     pub horizons: &'a [f64],

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::family::with_values;
 use crate::fit_task::{FitError, FitTask};
+use crate::start_state::{FittedStart, by_state, fit_start, start_by};
 use crate::trajectory::{Trajectory, follow};
 use crate::{Loss, differentiate};
 
@@ -66,9 +67,23 @@ impl Problem<'_> {
         differences
     }
 
+    /// The start of a trajectory with this mechanism, if it follows from its flight.
+    fn fitted(
+        &self,
+        mechanism: &InterpretedMechanism,
+        options: &Options,
+        trajectory: &Trajectory,
+    ) -> Result<Option<FittedStart>, FitError> {
+        let measure = (self.task.measured, self.task.units);
+        let fitted = |flight| fit_start(mechanism, options, measure, trajectory, flight);
+        self.task.flight.map(fitted).transpose()
+    }
+
     /// The differences without derivatives.
     fn plain(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
         let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
+        let fitted = self.fitted(&mechanism, &options, trajectory)?;
+        let trajectory = fitted.as_ref().map_or(trajectory, |found| &found.trajectory);
         let states = follow(&mechanism, &options, trajectory)
             .map_err(|error| FitError::Motion(trajectory.name.clone(), error.into()))?;
         Ok(self.differences_of(trajectory, &states))
@@ -79,11 +94,20 @@ impl Problem<'_> {
         let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
         let (mut all, mut rows, mut without) = (Vec::new(), Vec::new(), Vec::new());
         for &place in places {
-            let trajectory = &self.task.trajectories[place];
+            let given = &self.task.trajectories[place];
+            let fitted = self.fitted(&mechanism, &options, given)?;
+            let trajectory = fitted.as_ref().map_or(given, |found| &found.trajectory);
             let (coordinates, speeds) = trajectory.state.split_at(mechanism.count(ComponentKind::Coordinate));
             let start = State { time: trajectory.start, coordinates, speeds, inputs: &[] };
-            let found =
-                differentiate(&mechanism, &start, options.clone(), self.task.variables, &trajectory.times);
+            let own = self.task.variables;
+            let mut variables = own.to_vec();
+            let mut start_changes = None;
+            if let (Some(fitted), Some(flight)) = (&fitted, self.task.flight) {
+                variables.extend(by_state(coordinates.len(), speeds.len()));
+                let measure = (self.task.measured, self.task.units);
+                start_changes = Some(start_by(&mechanism, &options, measure, (given, fitted), flight, own)?);
+            }
+            let found = differentiate(&mechanism, &start, options.clone(), &variables, &trajectory.times);
             let found = found.map_err(|error| FitError::Motion(trajectory.name.clone(), error))?;
             let states: Vec<Vec<f64>> = found.samples.iter().map(|sample| sample.state.clone()).collect();
             let differences = self.differences_of(trajectory, &states);
@@ -93,14 +117,18 @@ impl Problem<'_> {
             all.extend(differences);
             if found.undefined.is_some() {
                 without.push(trajectory.name.clone());
-                rows.extend(self.by_differences(values, trajectory)?);
+                rows.extend(self.by_differences(values, given)?);
                 continue;
             }
             for (row, sample) in found.samples.iter().enumerate() {
                 let Some(by) = &sample.derivative else { continue };
+                let mut total = by.columns(0, own.len()).into_owned();
+                if let Some(changes) = &start_changes {
+                    total += by.columns(own.len(), changes.nrows()) * changes;
+                }
                 for (column, (&index, unit)) in self.task.measured.iter().zip(self.task.units).enumerate() {
                     if !trajectory.samples[(row, column)].is_nan() {
-                        rows.extend(by.row(index).iter().map(|by| by / unit));
+                        rows.extend(total.row(index).iter().map(|by| by / unit));
                     }
                 }
             }

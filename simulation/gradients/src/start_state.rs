@@ -51,7 +51,7 @@ pub fn fit_start(
     };
     let task = Flight { mechanism, options, measured, units, first: &first };
     let mut state = trajectory.state.clone();
-    let (mut off, mut by) = task.differences(&state)?;
+    let (mut off, mut by) = task.differences(&state, &[])?;
     for _ in 0..STEPS {
         let step = least(&by, &off);
         let mut part = 1.0;
@@ -62,7 +62,7 @@ pub fn fit_start(
             let n = mechanism.count(ComponentKind::Coordinate);
             // A rotation that cannot be brought to length one is not near to any.
             if mechanism.normalise(&mut trial[..n]).is_ok()
-                && let Ok(there) = task.differences(&trial)
+                && let Ok(there) = task.differences(&trial, &[])
                 && there.0.norm_squared() < off.norm_squared()
             {
                 next = Some((trial, there));
@@ -102,6 +102,27 @@ pub fn fit_start(
     Ok(FittedStart { trajectory: Trajectory { state, ..trajectory.clone() }, errors, covariance, rms })
 }
 
+/// How a start state that was fitted changes with these variables: a row for each coordinate and independent speed, a
+/// column for each variable. To the order of the differences that are left it is that of the least squares at a state
+/// that follows the variables.
+pub(crate) fn start_by(
+    mechanism: &InterpretedMechanism,
+    options: &Options,
+    (measured, units): (&[usize], &[f64]),
+    (given, found): (&Trajectory, &FittedStart),
+    flight: f64,
+    variables: &[By],
+) -> Result<DMatrix<f64>, FitError> {
+    let count = found.trajectory.state.len();
+    let Some(first) = given.until(flight) else { return Ok(DMatrix::zeros(count, variables.len())) };
+    let task = Flight { mechanism, options, measured, units, first: &first };
+    let (_, by) = task.differences(&found.trajectory.state, variables)?;
+    let (own, others) = (by.columns(0, count).into_owned(), by.columns(count, variables.len()));
+    let columns: Vec<DVector<f64>> =
+        others.column_iter().map(|column| -least(&own, &column.into_owned())).collect();
+    Ok(DMatrix::from_fn(count, variables.len(), |row, column| columns[column][row]))
+}
+
 /// The first samples of a motion.
 struct Flight<'a> {
     mechanism: &'a InterpretedMechanism,
@@ -113,12 +134,12 @@ struct Flight<'a> {
 
 impl Flight<'_> {
     /// The differences of the motion from a state and its samples, its first row among them, in their units, and their
-    /// derivatives by the state.
-    fn differences(&self, state: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>), FitError> {
+    /// derivatives by the state and by other variables.
+    fn differences(&self, state: &[f64], others: &[By]) -> Result<(DVector<f64>, DMatrix<f64>), FitError> {
         let Trajectory { name, start, times, samples, state: given } = self.first;
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let (coordinates, speeds) = state.split_at(n);
-        let variables: Vec<By> = (0..n).map(By::Coordinate).chain((0..speeds.len()).map(By::Speed)).collect();
+        let variables: Vec<By> = by_state(n, speeds.len()).chain(others.iter().copied()).collect();
         let from = State { time: *start, coordinates, speeds, inputs: &[] };
         let found = differentiate(self.mechanism, &from, self.options.clone(), &variables, times)
             .map_err(|error| FitError::Motion(name.clone(), error))?;
@@ -140,7 +161,7 @@ impl Flight<'_> {
         let (mut off, mut rows) = (Vec::new(), Vec::new());
         for (&index, unit) in self.measured.iter().zip(self.units) {
             off.push((state[index] - given[index]) / unit);
-            rows.extend((0..state.len()).map(|place| f64::from(u8::from(place == index)) / unit));
+            rows.extend((0..variables.len()).map(|place| f64::from(u8::from(place == index)) / unit));
         }
         for (row, sample) in found.samples.iter().enumerate() {
             let Some(by) = &sample.derivative else { continue };
@@ -152,9 +173,14 @@ impl Flight<'_> {
                 }
             }
         }
-        let by = DMatrix::from_row_slice(off.len(), state.len(), &rows);
+        let by = DMatrix::from_row_slice(off.len(), variables.len(), &rows);
         Ok((DVector::from_vec(off), by))
     }
+}
+
+/// Each coordinate and each speed of a start state, as variables.
+pub(crate) fn by_state(coordinates: usize, speeds: usize) -> impl Iterator<Item = By> {
+    (0..coordinates).map(By::Coordinate).chain((0..speeds).map(By::Speed))
 }
 
 /// The least squares step in columns of unit size, so that units of the state do not matter.

@@ -85,6 +85,7 @@ pub fn floor(
         units: measure.units,
         variables,
         loss: Loss::Square,
+        flight: None,
         horizons: &[],
         starts: 1,
         bootstrap: 0,

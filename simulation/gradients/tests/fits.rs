@@ -43,6 +43,7 @@ fn task<'a>(trajectories: &'a [Trajectory], variables: &'a [By], bootstrap: usiz
         units: &[1e-3; 3],
         variables,
         loss,
+        flight: None,
         horizons: &[],
         starts: 1,
         bootstrap,
@@ -173,6 +174,39 @@ fn start_states_are_fitted_to_flight() {
         let none = fit_start(&mechanism, &options, columns, &measured, 0.01);
         assert!(matches!(&none, Err(FitError::BadRequest(what)) if what.contains("no sample")), "{none:?}");
     }
+}
+
+/// Gravity decides what start the samples of a flight tell: the start follows the value that is tried, whether it was
+/// measured or not, and both are found. One that depends on no value is the same as before.
+#[test]
+fn start_states_follow_the_values_that_are_fitted() {
+    let mut throws = throws(([0.23, 0.61], [1.0, 1.04, 9.7]), 0.0);
+    let exact: Vec<Vec<f64>> = throws.iter().map(|throw| throw.state.clone()).collect();
+    for throw in &mut throws {
+        throw.state[3..].fill(0.0);
+    }
+    let variables = [By::Friction(None), By::Restitution(None), By::Parameter(1), By::Parameter(2)];
+    let task = FitTask { flight: Some(0.12), units: &[1e-3; 3], ..task(&throws, &variables, 0) };
+    let found = fit(&rod(), &options(0.2, 0.55, Law::Poisson), &task).unwrap();
+    for (found, exact) in found.values.iter().zip([0.23, 0.61, 1.04, 9.7]) {
+        assert!((found - exact).abs() < 1e-8 * exact, "{found} instead of {exact}");
+    }
+    for (start, exact) in found.starts.iter().zip(&exact) {
+        for (value, exact) in start.trajectory.state.iter().zip(exact) {
+            assert!((value - exact).abs() < 1e-7, "{value} {exact}");
+        }
+    }
+    assert!(found.rms < 1e-5 && found.undetermined.is_empty(), "{found:?}");
+    // Friction and restitution alone: gravity has to be right.
+    let mut mechanism = rod();
+    mechanism.set_parameter_values(&[1.0, 1.04, 9.7]).unwrap();
+    let task = FitTask { variables: &variables[..2], ..task };
+    let found = fit(&mechanism, &options(0.2, 0.55, Law::Poisson), &task).unwrap();
+    assert!((found.values[0] - 0.23).abs() < 1e-9 && (found.values[1] - 0.61).abs() < 1e-9, "{found:?}");
+    assert_eq!(found.starts.len(), throws.len());
+    let twice = [By::Restitution(Some(0)), By::Restitution(None)];
+    let twice = fit(&mechanism, &options(0.2, 0.55, Law::Poisson), &FitTask { variables: &twice, ..task });
+    assert!(matches!(&twice, Err(FitError::BadRequest(what)) if what.contains("all contacts")), "{twice:?}");
 }
 
 /// With little friction a descent ends in another minimum, mu = 0.037, e = 0.486; one of several starts leads to the values.

@@ -73,6 +73,14 @@ impl Pair {
         self.law.mu_impact.unwrap_or(self.surface.mu)
     }
 
+    /// Whether friction is the same in impacts and in lasting contact.
+    pub fn is_the_same_in_impacts(&self) -> bool {
+        let (mu, law) = (self.surface.mu, &self.law);
+        let coefficients = [law.mu_static, law.mu_impact].iter().flatten().all(|other| *other == mu);
+        let torques = [law.rolling, law.spinning].iter().flatten().any(|arm| *arm > 0.0);
+        coefficients && !torques && matches!(law.sliding, Sliding::Constant)
+    }
+
     /// The coefficient of restitution at a speed of approach.
     pub fn e(&self, approach: f64) -> Result<f64, String> {
         let e = self.law.restitution.at(self.surface.e, approach);

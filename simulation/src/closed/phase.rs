@@ -69,6 +69,8 @@ pub(crate) struct Closed {
     pub contact: usize,
     /// coefficient of friction up to which it sticks, or at which its slip begins and ends
     pub mu: f64,
+    /// whether this coefficient is that in impacts, at any slip: bounces lower than the tolerance have not ended
+    pub bounces: bool,
     /// `None` while it sticks; else the direction in which slip began, used as long as slip is too small to
     /// have one
     pub slides: Option<Vector2<f64>>,

@@ -144,9 +144,8 @@ impl Transition<'_> {
         let mut friction = sliding.clone();
         for (place, friction) in friction.iter_mut().enumerate().filter(|(place, _)| slides(*place)) {
             if stopped.contains(&place) && straight(here, place) {
-                friction.sticks = self.pair(closed[place].contact).map_or(friction.sticks, |pair| {
-                    pair.friction(0.0).map_or(friction.sticks, |friction| friction.sticks)
-                });
+                let held = self.friction(closed[place].contact, 0.0);
+                friction.sticks = held.map_or(friction.sticks, |held| held.sticks);
             }
         }
         if friction == sliding { Vec::new() } else { sticking(&friction) }

@@ -22,10 +22,15 @@ impl Transition<'_> {
         let due: Vec<usize> =
             self.front.chatter.iter().filter(|(time, _)| *time <= now).map(|(_, contact)| *contact).collect();
         self.front.chatter.retain(|(time, _)| *time > now);
+        let mut other_friction = false;
         for contact in due {
             if self.front.phases[contact].is_closed() {
                 self.announce_contact(contact);
+                other_friction |= self.pair(contact).is_some_and(|pair| !pair.is_the_same_in_impacts());
             }
+        }
+        if other_friction {
+            self.keep_or_decide()?;
         }
         self.look_for_rest()
     }

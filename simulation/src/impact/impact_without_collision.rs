@@ -98,7 +98,7 @@ impl Transition<'_> {
             Jam::Impact(hit) => self.strike_jam(hit, was),
             // There are finite forces in other modes.
             Jam::Modes(choice) => {
-                self.apply(&closed, was, &choice);
+                self.apply(&closed, was, &choice)?;
                 self.crowded(self.front.t)
             }
             Jam::Unsolved => self.go_past_a_jam(&closed, was, alone),

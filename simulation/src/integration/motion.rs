@@ -191,7 +191,7 @@ impl<'a> Motion<'a> {
         mus.clear();
         for (i, (closed, hold)) in self.closed.iter().zip(holds).enumerate() {
             mus.push(match (hold, &self.surfaces[closed.contact]) {
-                (Hold::Slide(_), Some(pair)) => pair
+                (Hold::Slide(_), Some(pair)) if !closed.bounces => pair
                     .sliding(support.slip(i).norm())
                     .map_err(|message| Failure::Law(closed.contact, message))?,
                 _ => closed.mu,

@@ -48,6 +48,8 @@ pub enum EventKind {
     Slip {
         /// direction along the two tangential axes of the contact basis
         direction: [f64; 2],
+        /// the same along N.x, N.y, N.z
+        along: [f64; 3],
         /// whether other modes were possible
         selection: Selection,
     },
@@ -60,6 +62,8 @@ pub enum EventKind {
     Roll {
         /// direction of the relative angular velocity along the two tangential axes of the contact basis
         direction: [f64; 2],
+        /// the same along N.x, N.y, N.z
+        along: [f64; 3],
         /// whether other modes were possible
         selection: Selection,
     },

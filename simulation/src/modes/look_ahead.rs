@@ -119,7 +119,7 @@ impl Transition<'_> {
         (mut question, mut choice): (Question, Choice),
     ) -> Result<(), SimulationError> {
         let mut since = self.events.len();
-        self.apply(contacts, was, &choice);
+        self.apply(contacts, was, &choice)?;
         let rounds = if contacts.len() < 2 || self.front.crowd < DOUBT { 0 } else { ROUNDS };
         for round in 0..rounds {
             match self.modes_ahead(contacts, was, round)? {
@@ -130,7 +130,7 @@ impl Transition<'_> {
                     self.front.phases.clone_from_slice(was);
                     self.begin_from_rest(contacts, &choice)?;
                     since = self.events.len();
-                    self.apply(contacts, was, &choice);
+                    self.apply(contacts, was, &choice)?;
                 }
             }
         }

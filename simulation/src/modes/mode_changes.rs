@@ -90,20 +90,21 @@ impl Transition<'_> {
             decided?;
         }
         if self.front.phases[contact] == Phase::Stick {
-            self.slip_against(contact, &before);
+            self.slip_against(contact, &before)?;
         }
         Ok(())
     }
 
     /// Slip begins opposite to the friction that held the contact.
-    fn slip_against(&mut self, contact: usize, force: &Vector3<f64>) {
+    fn slip_against(&mut self, contact: usize, force: &Vector3<f64>) -> Result<(), SimulationError> {
         let friction = Vector2::new(force.y, force.z);
         let size = friction.norm();
         if size > 0.0 {
             self.front.phases[contact] = Phase::Slide(-friction / size);
             self.front.next = FIRST * self.front.scales.time;
-            self.slips(contact, Selection::Unique);
+            self.slips(contact, Selection::Unique)?;
         }
+        Ok(())
     }
 
     /// The normal force of the only closed contact vanishes.
@@ -265,12 +266,17 @@ impl Transition<'_> {
 
     /// Applies the chosen modes, and records the changes as events; whether others were possible is told later, if it is
     /// not known ([`Self::tell_selection`]).
-    pub(crate) fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
+    pub(crate) fn apply(
+        &mut self,
+        candidates: &[usize],
+        was: &[Phase],
+        choice: &Choice,
+    ) -> Result<(), SimulationError> {
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection.unwrap_or(Selection::Unknown);
             self.front.forces[contact] = choice.forces[place];
             if let Some(torque) = self.mechanism.torque(contact) {
-                self.apply_to_torque(contact, torque, was[contact], choice.decisions[place], selection);
+                self.apply_to_torque(contact, torque, was[contact], choice.decisions[place], selection)?;
                 continue;
             }
             match choice.decisions[place] {
@@ -298,12 +304,13 @@ impl Transition<'_> {
                     }
                     match was[contact] {
                         Phase::Open(_) => self.begin_contact(contact, selection),
-                        _ if begins => self.slips(contact, selection),
+                        _ if begins => self.slips(contact, selection)?,
                         _ => {}
                     }
                 }
             }
         }
+        Ok(())
     }
 
     /// Tells the events since this number whether other modes were possible.
@@ -318,18 +325,26 @@ impl Transition<'_> {
         self.events[since..].iter_mut().for_each(|event| event.kind.select(selection));
     }
 
-    fn slips(&mut self, contact: usize, selection: Selection) {
+    fn slips(&mut self, contact: usize, selection: Selection) -> Result<(), SimulationError> {
         self.front.resting = false;
         if let Phase::Slide(d) = self.front.phases[contact]
             && !self.bounces(contact)
         {
-            self.push(Some(contact), EventKind::Slip { direction: [d.x, d.y], selection });
+            let along = self.along_axes_of_n(contact, d)?;
+            self.push(Some(contact), EventKind::Slip { direction: [d.x, d.y], along, selection });
         }
+        Ok(())
     }
 
-    /// Whether the bounces of a contact, which are now lower than the tolerance, have not yet ended.
-    pub(crate) fn bounces(&self, contact: usize) -> bool {
-        self.front.chatter.iter().any(|&(time, other)| other == contact && time > self.front.t)
+    /// A tangential direction of a contact along N.x, N.y, N.z.
+    pub(crate) fn along_axes_of_n(
+        &self,
+        contact: usize,
+        direction: Vector2<f64>,
+    ) -> Result<[f64; 3], SimulationError> {
+        let axes = self.mechanism.mechanism.contact_state(contact, &self.here());
+        let axes = axes.map_err(|error| self.failure(Failure::State(error)))?;
+        Ok((axes.first * direction.x + axes.second * direction.y).into())
     }
 
     /// Begins a contact; the event is recorded now, or when its bounces have ended.

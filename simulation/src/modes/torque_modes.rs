@@ -22,7 +22,7 @@ impl Transition<'_> {
         was: Phase,
         decision: Decision,
         selection: Selection,
-    ) {
+    ) -> Result<(), SimulationError> {
         let phase = match decision {
             _ if !self.front.phases[torque.contact].is_closed() => Phase::Open(Leaving::Apart),
             Decision::Stick => Phase::Stick,
@@ -36,16 +36,18 @@ impl Transition<'_> {
             self.front.next = self.front.next.min(FIRST * self.front.scales.time);
         }
         if self.bounces(torque.contact) {
-            return;
+            return Ok(());
         }
         match (was, phase) {
             (Phase::Slide(_), Phase::Stick) => self.push(Some(number), ends(torque.turning, selection)),
             (Phase::Stick | Phase::Slide(_), Phase::Slide(d)) if begins => {
                 self.front.resting = false;
-                self.push(Some(number), turns(torque.turning, d, selection));
+                let along = self.along_axes_of_n(torque.contact, d)?;
+                self.push(Some(number), turns(torque.turning, d, along, selection));
             }
             _ => {}
         }
+        Ok(())
     }
 
     /// Handles a jam of a sliding contact or of a torque, whose force would grow without bound.
@@ -75,9 +77,9 @@ impl Transition<'_> {
 }
 
 /// The event of rotation that begins in a direction.
-fn turns(turning: Turning, direction: Vector2<f64>, selection: Selection) -> EventKind {
+fn turns(turning: Turning, direction: Vector2<f64>, along: [f64; 3], selection: Selection) -> EventKind {
     match turning {
-        Turning::Rolling => EventKind::Roll { direction: [direction.x, direction.y], selection },
+        Turning::Rolling => EventKind::Roll { direction: [direction.x, direction.y], along, selection },
         Turning::Spinning => EventKind::Spin { positive: direction.x > 0.0, selection },
     }
 }

@@ -114,6 +114,7 @@ impl Transition<'_> {
                 Some(Closed {
                     contact,
                     mu: self.mu_in_mode(contact, slides.is_some()),
+                    bounces: self.bounces(contact),
                     omega: slides.and(self.front.omegas[contact]),
                     turning: slides.and(self.front.turnings[contact].clone()),
                     slides,
@@ -127,8 +128,23 @@ impl Transition<'_> {
         self.surfaces.get(contact).and_then(Option::as_ref)
     }
 
+    /// Whether the bounces of a contact, or of that of a torque, which are now lower than the tolerance, have not
+    /// yet ended.
+    pub(crate) fn bounces(&self, contact: usize) -> bool {
+        let own = self.mechanism.contact(contact);
+        self.front.chatter.iter().any(|&(time, other)| other == own && time > self.front.t)
+    }
+
+    /// The friction of a contact while it bounces: that of impacts, which have no torques.
+    fn friction_in_impacts(&self, contact: usize) -> Friction {
+        self.pair(contact).map_or(Friction::NONE, |pair| Friction::same(pair.mu_in_impacts()))
+    }
+
     /// The coefficients of friction of a contact at a speed of slip, 0 without slip.
     pub(crate) fn friction(&self, contact: usize, slip: f64) -> Result<Friction, SimulationError> {
+        if self.bounces(contact) {
+            return Ok(self.friction_in_impacts(contact));
+        }
         if let Some(torque) = self.mechanism.torque(contact) {
             return Ok(torque.friction());
         }
@@ -138,6 +154,9 @@ impl Transition<'_> {
 
     /// The coefficient of a sticking contact, or of one with small slip.
     fn mu_in_mode(&self, contact: usize, slides: bool) -> f64 {
+        if self.bounces(contact) {
+            return self.friction_in_impacts(contact).slips;
+        }
         if let Some(torque) = self.mechanism.torque(contact) {
             return torque.mu;
         }

@@ -25,7 +25,8 @@ class Event(NamedTuple):
     """An event of a motion: its time, s; its ``kind`` ('collision', 'impact_without_collision', 'struck_together', 'contact', 'lift_off', 'slip', 'stick',
     'roll', 'roll_ends', 'spin', 'spin_ends', 'rest', 'singular', or the name of an own event); the name of the contact, or None; the state after it,
     ``q`` (n,), ``u`` (p,). Of impacts, otherwise None: ``impulse_on_point`` (3,) along N.x, N.y, N.z, N s; ``energy_change``, J; ``speeds_before`` (p,).
-    Of contact that begins its ``mode``; of slip and rolling the ``direction`` (2,) along the tangential axes; of events that choose modes the
+    Of contact that begins its ``mode``; of slip and rolling the ``direction`` (2,) along the tangential axes, and ``along`` (3,), the same along
+    N.x, N.y, N.z; of events that choose modes the
     ``selection`` ('unique', 'several_modes', ..); of contacts that strike together the ``shares``: dictionaries with contact, impulse, .."""
 
     time: float
@@ -38,6 +39,7 @@ class Event(NamedTuple):
     speeds_before: Optional[Floats] = None
     mode: Optional[str] = None
     direction: Optional[Floats] = None
+    along: Optional[Floats] = None
     selection: Optional[str] = None
     shares: tuple[dict[str, Any], ...] = ()
 

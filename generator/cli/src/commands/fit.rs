@@ -96,18 +96,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 by.map_err(|message| Failure::new(Kind::UnknownName, format!("--parameters: {message}")))?;
             let start = state.borrowed();
             let options = arguments.motion.options(&mechanism, &start)?;
-            let mut motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
+            let motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
             let units = arguments.units(&motions, &mechanism)?;
-            let starts = match arguments.flight {
-                Some(flight) => motions.fit_starts(&mechanism, &options, &units, flight).map_err(stop)?,
-                None => Vec::new(),
-            };
             let task = FitTask {
                 trajectories: &motions.trajectories,
                 measured: &motions.measured,
                 units: &units,
                 variables: &by,
                 loss: arguments.loss(),
+                flight: arguments.flight,
                 horizons: &arguments.horizons,
                 starts: arguments.starts,
                 bootstrap: arguments.bootstrap,
@@ -122,7 +119,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             answer.model = arguments.model.display().to_string();
             answer.options = arguments.motion.given();
             answer.flight = arguments.flight;
-            answer.start_states = starts.iter().map(|found| Start::new(&machine.mechanism, found)).collect();
+            answer.start_states =
+                found.starts.iter().map(|found| Start::new(&machine.mechanism, found)).collect();
             answer.motions = motions.trajectories.iter().map(|one| one.name.clone()).collect();
             Ok(answer)
         },

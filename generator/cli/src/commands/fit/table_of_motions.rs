@@ -116,7 +116,7 @@ impl Motions {
         }
         let mut rows = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|error| wrong(error.to_string()))?;
+            let record = record.map_err(|error| wrong(sentence(&error)))?;
             rows.push(row(&record, &columns, &heads).map_err(wrong)?);
         }
         let each: Vec<&[Row]> = rows.chunk_by(|a, b| a.trajectory == b.trajectory).collect();
@@ -169,6 +169,19 @@ impl Motions {
             if square > 0.0 { square.sqrt() } else { 1.0 }
         };
         (0..self.measured.len()).map(deviation).collect()
+    }
+}
+
+/// Why a row cannot be read.
+fn sentence(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            format!(
+                "line {line}: it has {len} cells, and the head {expected_len}: leave cells of what was not measured empty, with their commas"
+            )
+        }
+        _ => error.to_string(),
     }
 }
 

@@ -56,6 +56,8 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    along: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     sense: Option<i8>,
     #[serde(skip_serializing_if = "Option::is_none")]
     several_modes: Option<bool>,
@@ -205,6 +207,7 @@ impl<'m> Lines<'m> {
             spread: None,
             mode: None,
             direction: None,
+            along: None,
             sense: None,
             several_modes: None,
             indeterminate: None,
@@ -224,9 +227,11 @@ impl<'m> Lines<'m> {
                 certain(selection);
                 line.mode = Some(mode.name());
             }
-            EventKind::Slip { direction, selection } | EventKind::Roll { direction, selection } => {
+            EventKind::Slip { direction, along, selection }
+            | EventKind::Roll { direction, along, selection } => {
                 certain(selection);
                 line.direction = Some(direction.map(|part| part + 0.0));
+                line.along = Some(along.map(|part| part + 0.0));
             }
             EventKind::Spin { positive, selection } => {
                 certain(selection);
