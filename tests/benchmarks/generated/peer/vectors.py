@@ -6,6 +6,7 @@ from pathlib import Path
 import casadi
 import numpy as np
 from casadi import SX, vertcat
+from others import GENERATORS
 
 
 def clean(matrix):
@@ -96,7 +97,7 @@ def lower(matrix):
 
 
 def write(folder, inputs, routines, angles):
-    """Each routine as `<name>.c` with a function of the inputs (the second and third are sines and cosines); `routines.json` lists them.
+    """Each routine as `<name>.c`, and `<name>_<generator>.c` for other generators of the same graph, with a function of the inputs (the second and third are sines and cosines); `routines.json` lists them.
 
     `angles` gives for a routine its angles, as C expressions of the coordinates `q`.
     """
@@ -114,6 +115,10 @@ def write(folder, inputs, routines, angles):
         used = {symbol.name() for symbol in casadi.symvar(result)}
         needed = [place for place in range(inputs[1].numel()) if not used.isdisjoint((names(inputs[1])[place], names(inputs[2])[place]))]
         listed[name] = {"length": result.numel(), "angles": [[place, angles(name)[place]] for place in needed]}
+        for generator, written in GENERATORS.items():
+            other = f"{name}_{generator}"
+            (folder / f"{other}.c").write_text(written(function))
+            listed[other] = listed[name]
     (folder / "routines.json").write_text(json.dumps(listed))
 
 

@@ -36,7 +36,7 @@ struct Arguments {
     tool: Option<PathBuf>,
     /// fetch public robots and compare them, instead of measuring
     robots: bool,
-    /// fetch CasADi and compare times with its code, instead of measuring
+    /// fetch CasADi, wrenfold and SymForce and compare times with their code, instead of measuring
     times: bool,
     /// fetch a peer and measure its rounding anew
     peers: bool,

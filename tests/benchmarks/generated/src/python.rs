@@ -9,7 +9,7 @@ use crate::tools::{Failure, Folders, output};
 const PINOCCHIO: &str = "pin==4.1.0";
 
 /// What writes the code that ours is timed against.
-const CASADI: &str = "casadi==3.8.2";
+const GENERATORS: [&str; 3] = ["casadi==3.8.2", "wrenfold==0.5.3", "symforce==0.12.0"];
 
 /// Fetches Pinocchio into the benchmark's own folder, if it is not there yet; the interpreter.
 pub fn with_pinocchio(folders: &Folders) -> Result<PathBuf, Failure> {
@@ -23,9 +23,9 @@ pub fn with_pinocchio(folders: &Folders) -> Result<PathBuf, Failure> {
     Ok(python)
 }
 
-/// The same with CasADi.
-pub fn with_casadi(folders: &Folders) -> Result<PathBuf, Failure> {
+/// The same with other generators of code.
+pub fn with_generators(folders: &Folders) -> Result<PathBuf, Failure> {
     let python = with_pinocchio(folders)?;
-    output(Command::new(&python).args(["-m", "pip", "--quiet", "install", CASADI]))?;
+    output(Command::new(&python).args(["-m", "pip", "--quiet", "install"]).args(GENERATORS))?;
     Ok(python)
 }

@@ -1,4 +1,4 @@
-//! Times of the generated routines as ratios to those of C code generated with CasADi, in the same process.
+//! Times of the generated routines as ratios to those of C code generated with CasADi, wrenfold and SymForce, in the same process.
 //!
 //! The scripts in `peer/` write the C code; gcc compiles it for the same target, and one program calls both
 //! in turns.
@@ -42,7 +42,7 @@ struct Figures {
 
 /// Times all mechanisms, or those that are named, and prints a table.
 pub fn run(folders: &Folders, tool: &Path, only: &[String]) -> Result<(), Failure> {
-    let python = python::with_casadi(folders)?;
+    let python = python::with_generators(folders)?;
     let wanted =
         |case: &Case| TIMED.contains(&case.name.as_str()) && (only.is_empty() || only.contains(&case.name));
     let cases: Vec<Case> = cases::all().into_iter().filter(wanted).collect();

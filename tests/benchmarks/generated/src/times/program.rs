@@ -231,7 +231,7 @@ fn calls(derivation: &Derivation<'_>, peers: &[Peer]) -> String {
         let _ = writeln!(counted, "            let _ = {call};");
         let _ = writeln!(
             timed,
-            "    let mut {name}_ = |count: usize| for at in 0..count {{ let s = &states[at % states.len()]; let _ = {call}; }};"
+            "    let mut {name}_ = |count: usize| for s in states.iter().cycle().take(count) {{ let _ = {call}; }};"
         );
     }
     for peer in peers {
@@ -245,7 +245,7 @@ fn calls(derivation: &Derivation<'_>, peers: &[Peer]) -> String {
             let _ = writeln!(counted, "            {call};");
             let _ = writeln!(
                 timed,
-                "    let mut {name}_ = |count: usize| {{ let mut out = [0.0; LONGEST]; for at in 0..count {{ let s = &states[at % states.len()]; {call}; black_box(&mut out); }} }};"
+                "    let mut {name}_ = |count: usize| {{ let mut out = [0.0; LONGEST]; for s in states.iter().cycle().take(count) {{ {call}; black_box(&mut out); }} }};"
             );
         }
     }
