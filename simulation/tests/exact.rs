@@ -2,12 +2,14 @@
 //! that are curved or move.
 
 use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
+use ball_on_block::BallOnBlock;
 use ball_on_lift::BallOnLift;
 use bead_on_sphere::BeadOnSphere;
 use hodograph::{Law, Mechanism};
 use hodograph_simulation::{ContactLaw, ContactPhase, Options, Sliding};
 use puck_on_incline::PuckOnIncline;
 
+hodograph::mechanism!("tests/models/ball_on_block.mech");
 hodograph::mechanism!("tests/models/ball_on_lift.mech");
 hodograph::mechanism!("tests/models/bead_on_sphere.mech");
 hodograph::mechanism!("tests/models/puck_on_incline.mech");
@@ -146,6 +148,36 @@ fn momentum_over_a_chatter() {
                     contact.speeds
                 );
             }
+        }
+    }
+}
+
+/// A step of free flight leads through the top of a box to its middle, where no distance is known: it is shortened, and
+/// every bounce is found.
+#[test]
+fn a_ball_bounces_on_a_box_that_long_steps_enter() {
+    let body = BallOnBlock::<f64>::default();
+    for height in [0.5, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0] {
+        for e in [0.3, 0.5, 0.8, 1.0] {
+            let options = surface(0.3, e, Law::Newton);
+            let mut simulation = start(&body, &[0.1, -0.2, height], &[0.05, 0.0, 0.0], options);
+            let until = 3.0;
+            let events = run(&mut simulation, until);
+            let (mut time, mut speed) =
+                (f64::sqrt(2.0 * (height - 0.3) / G), f64::sqrt(2.0 * (height - 0.3) * G));
+            let mut struck = 0;
+            for found in collisions(&events) {
+                assert!((found - time).abs() < 1e-9, "{height} {e}: {found} {time}");
+                speed *= e;
+                time += 2.0 * speed / G;
+                struck += 1;
+            }
+            // What is left is more than no bounce at all, or lower than the tolerance.
+            assert!(
+                struck > 0 && (time > until || speed < 1e-4),
+                "{height} {e}: {struck} {:?}",
+                names(&events)
+            );
         }
     }
 }

@@ -6,7 +6,10 @@ use crate::common::{Body, Line, Part, run, start, surface};
 use crate::many::numeric;
 
 use hodograph::{Cause, Law, State};
-use hodograph_simulation::{ErrorKind, Options, Progress, Simulation};
+use hodograph_simulation::{ErrorKind, ImpactsAtOnce, Options, Progress, Simulation};
+use press::Press;
+
+hodograph::mechanism!("tests/models/press.mech");
 
 fn particle() -> Body {
     Body::new(1.0, 1.0, &[Line::floor(Part::Point(0.0, 0.0))])
@@ -43,6 +46,24 @@ fn tolerances_without_a_digit_are_refused() {
         let state = State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
         let error = Simulation::new(&body, &state, options).expect_err("such a tolerance means nothing");
         assert!(matches!(&error.kind, ErrorKind::BadOption(text) if text.contains("tolerance")), "{error}");
+    }
+}
+
+/// A press comes down on a ball that lies on the floor: no impulses stop it, whatever the hypothesis and the order.
+#[test]
+fn what_prescribed_motion_leaves_no_room_is_an_error_with_its_contacts() {
+    let press = Press::<f64>::default();
+    for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+        for together in [ImpactsAtOnce::Approaching, ImpactsAtOnce::Simultaneous, ImpactsAtOnce::Sequential] {
+            for (mu, e) in [(0.2, 0.3), (0.0, 0.0)] {
+                let options = Options { together, ..surface(mu, e, law) };
+                let mut simulation = start(&press, &[0.0, 0.1], &[0.0; 2], options);
+                let error = simulation.advance_to(1.0).unwrap_err();
+                assert!((error.time - 0.5).abs() < 1e-9, "{law:?} {together:?}: {error}");
+                let words = "floor, press leave what lies between them no room";
+                assert!(error.to_string().contains(words), "{law:?} {together:?}: {error}");
+            }
+        }
     }
 }
 

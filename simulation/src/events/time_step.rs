@@ -2,7 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 
-use hodograph::{ComponentKind, ContactError, State};
+use hodograph::{ComponentKind, ContactError, State, StateError};
 use nalgebra::Vector2;
 use smallvec::SmallVec;
 
@@ -35,6 +35,9 @@ const ADVANCE: f64 = 1e-2;
 const STUCK: usize = 1200;
 const CONTACTS: usize = 4;
 const NOTHING: f64 = 2e-8;
+/// Where steps hardly advance, gaps are looked at after these times, in units of the time of the problem: what has no value there is the
+/// cause.
+const AHEAD: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
 /// After so many steps in a row slip that would end at once is taken for slip whose direction turns.
 const AGAIN: usize = 2;
 
@@ -304,12 +307,36 @@ impl Transition<'_> {
                 if let Some(contact) = self.singular_here(&self.closed()) {
                     return self.end_at(contact);
                 }
+                if let Some(error) = self.undefined_ahead() {
+                    return Err(self.failure(Failure::State(error)));
+                }
                 let modes = self.modes_in_words();
                 return Err(self.error(None, ErrorKind::NoProgress { steps, time, modes }));
             }
             self.front.steps = (0, self.front.t, longest);
         }
         Ok(())
+    }
+
+    /// Why a gap has no value a little later, if one has none: what shorter and shorter steps have kept away from.
+    fn undefined_ahead(&self) -> Option<StateError> {
+        let closed = self.closed();
+        let here = self.motion(&closed).evaluate(self.front.t, &self.front.y).ok()?;
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        let p = self.mechanism.count(ComponentKind::Speed);
+        AHEAD.into_iter().find_map(|ahead| {
+            let after = ahead * self.front.scales.time;
+            let y: Vec<f64> =
+                self.front.y.iter().zip(&here.rates).map(|(value, rate)| value + after * rate).collect();
+            let state = State {
+                time: self.front.t + after,
+                coordinates: &y[..n],
+                speeds: &y[n..n + p],
+                inputs: &self.front.held,
+            };
+            let with_surface = (0..self.front.phases.len()).filter(|&contact| self.pair(contact).is_some());
+            with_surface.map(|contact| self.mechanism.gap(contact, &state)).find_map(Result::err)
+        })
     }
 
     /// A step of at most this size, and the first event in it.
@@ -347,13 +374,20 @@ impl Transition<'_> {
             {
                 return Err(self.failure(failure));
             }
-            if !self.keeps_direction(closed, here, &step)? {
-                most = 0.5 * step.h;
-                continue;
-            }
-            if !self.leaving_is_known(&step)? {
-                most = 0.5 * step.h;
-                continue;
+            let keeps = self.keeps_direction(closed, here, &step);
+            match keeps.and_then(|keeps| Ok(keeps && self.leaving_is_known(&step)?)) {
+                Ok(true) => {}
+                Ok(false) => {
+                    most = 0.5 * step.h;
+                    continue;
+                }
+                // Behind an event the mechanism may have no state: a ball in the middle of the box that it strikes.
+                Err(SimulationError { kind: ErrorKind::State(error), .. }) => {
+                    *undefined.borrow_mut() = Some(Failure::State(error));
+                    most = 0.5 * step.h;
+                    continue;
+                }
+                Err(error) => return Err(error),
             }
             let Some(turns) = self.turns(closed, &step) else {
                 most = 0.5 * step.h;

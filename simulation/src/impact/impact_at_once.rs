@@ -6,7 +6,7 @@
 //! v+_n >= -e v-_n and p_n >= 0, one of them with equality, and friction abs(p_tan) <= mu p_n, which opposes
 //! the remaining slip (docs/theory.md, section 17.13).
 
-use hodograph::{Law, State};
+use hodograph::{ComponentKind, Law, State};
 use nalgebra::{DVector, Vector2};
 
 use crate::closed::closed_contacts::ClosedContacts;
@@ -163,6 +163,23 @@ impl Transition<'_> {
     pub(crate) fn plastic_impact(&self, contacts: &[usize], speeds: &[f64]) -> Result<Hit, SimulationError> {
         let support = self.struck_support(contacts, speeds)?;
         self.at_once(contacts, &support, speeds, &vec![0.0; contacts.len()], Vec::new())
+    }
+
+    /// The error of contacts that approach by prescribed motion and leave what lies between them no room: no impulses
+    /// stop all of them, not even without friction. `None` if some do.
+    pub(crate) fn without_room(&self, contacts: &[usize], speeds: &[f64]) -> Option<SimulationError> {
+        let support = self.struck_support(contacts, speeds).ok()?;
+        let none = vec![0.0; contacts.len()];
+        if solve(&support, &none, &none).is_ok() {
+            return None;
+        }
+        let name = |&contact: &usize| self.mechanism.component(ComponentKind::Contact, contact);
+        let names: Vec<&str> = contacts.iter().filter_map(name).map(|component| component.name).collect();
+        let message = format!(
+            "{} leave what lies between them no room: prescribed motion makes some of them approach, and no impulses stop all",
+            names.join(", ")
+        );
+        Some(self.error(None, ErrorKind::NoForces(message)))
     }
 
     fn struck_support(&self, contacts: &[usize], speeds: &[f64]) -> Result<ClosedContacts, SimulationError> {

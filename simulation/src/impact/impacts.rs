@@ -308,7 +308,10 @@ impl Transition<'_> {
                         hits.push(last);
                         return Ok(hits);
                     }
-                    unsolved => unsolved,
+                    unsolved => match self.without_room(&involved, &speeds) {
+                        Some(error) => return Err(error),
+                        None => unsolved,
+                    },
                 }
             } else {
                 self.hit(&next, &speeds, faded)

@@ -249,8 +249,13 @@ impl Lowering<'_> {
             ExprKind::Error => None,
             _ => {
                 let message = format!("`{of}` takes the names of points");
-                let error = Diagnostic::new(codes::WRONG_KIND, argument.span, message)
-                    .help("declare the point under `points`");
+                let help = match of {
+                    "velocity" => {
+                        "declare the point under `points`; behind `against:` a velocity begins with its vector, `velocity N.x*(a + b)`"
+                    }
+                    _ => "declare the point under `points`",
+                };
+                let error = Diagnostic::new(codes::WRONG_KIND, argument.span, message).help(help);
                 self.report(error);
                 None
             }

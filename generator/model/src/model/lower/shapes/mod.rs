@@ -78,7 +78,10 @@ impl Lowering<'_> {
         if particle.is_some() && (kind != Kind::Sphere || other("at").is_some()) {
             let message = "a particle is a point: only a sphere about it is its shape";
             let error = Diagnostic::new(codes::SHAPE, field.name.span, message);
-            self.report(error.help("leave `at` out, or give it a frame and inertia under `bodies`"));
+            self.report(error.help(match kind {
+                Kind::Sphere => "leave `at` out, or give it a frame and inertia under `bodies`",
+                _ => "give it a frame and inertia under `bodies`",
+            }));
             return None;
         }
         let span_of = |field: Option<&Field>| field.map_or(record.name.span, |field| field.value.span);
