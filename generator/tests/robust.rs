@@ -55,6 +55,14 @@ fn towers_and_numbers() {
     refused("an exponent", with("definitions { a = 1e999999999999; }"), codes::NUMBER_RANGE);
     let chain = "99^99*".repeat(2000);
     refused("a product", with(&format!("definitions {{ a = {chain}1; }}")), codes::NUMBER_RANGE);
+    for (what, constant) in [
+        ("a power that vanishes", "(3^-99)^99"),
+        ("a product that vanishes", "1e-200*1e-200"),
+        ("a quotient that vanishes", "1e-200/1e200"),
+        ("a power of many digits", "((3/7 + 1/1234567)^99)^99"),
+    ] {
+        refused(what, with(&format!("definitions {{ a = {constant}; }}")), codes::NUMBER_RANGE);
+    }
 }
 
 #[test]

@@ -67,6 +67,24 @@ fn what_prescribed_motion_leaves_no_room_is_an_error_with_its_contacts() {
     }
 }
 
+/// A normal that points down, under a gap that grows upwards: what separates along one falls through the other, first by
+/// less than a step can tell.
+#[test]
+fn a_gap_that_does_not_belong_to_its_normal_is_told_soon() {
+    let stone = numeric(
+        "turned",
+        "mechanism Turned; parameters { m: kg = 2, g: m/s^2 = 9.81 } coordinates { x: m, y: m } speeds { ux: m/s, uy: m/s }
+        points { P = O + x*N.x + y*N.y; } particles { Stone { point: P, mass: m } } loads { gravity: -g*N.y; }
+        kinematics { d(x)/dt = ux; d(y)/dt = uy; } contacts { ground { point: P of Stone, normal: -N.y, gap: y } }",
+    );
+    for up in [0.2, 0.0, -0.1] {
+        let options = surface(0.2, 0.0, Law::Newton);
+        let mut simulation = start(&stone, &[0.0; 2], &[0.3, up], options);
+        let error = simulation.advance_to(0.5).unwrap_err();
+        assert!(matches!(error.kind, ErrorKind::GapRate { .. }) && error.time < 1e-3, "{up}: {error}");
+    }
+}
+
 /// States are kept for the last step alone: an earlier time is refused, and not answered by the state of another.
 #[test]
 fn times_before_the_last_step_are_refused() {

@@ -41,6 +41,16 @@ fn devices_are_no_models() {
     let state = run(&["eval", &two_sleds, "--state", "/dev/zero"]);
     assert_eq!(state.code, 2);
     assert!(state.stderr.contains("the state from /dev/zero: it is a pipe or a device"), "{}", state.stderr);
+    let arm = model("puma_560");
+    for command in [
+        &["simulate", &arm, "--inputs", "/dev/zero"][..],
+        &["fit", &two_sleds, "/dev/zero", "--parameters", "e"],
+        &["validate", "/dev/zero", "/dev/zero"],
+    ] {
+        let run = run(command);
+        let said = "cannot read /dev/zero: it is a pipe or a device";
+        assert!(run.code == 2 && run.stderr.contains(said), "{command:?}: {} {}", run.code, run.stderr);
+    }
     let urdf = run(&["import", "/dev/zero"]);
     assert_eq!(urdf.code, 2);
     assert!(urdf.stderr.contains("cannot read /dev/zero: it is a pipe or a device"), "{}", urdf.stderr);

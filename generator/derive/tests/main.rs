@@ -2,6 +2,7 @@
 
 mod central_momentum;
 mod potential_energy;
+mod quaternion_rates;
 
 use hodograph_derive::derive;
 use hodograph_model::check::check;

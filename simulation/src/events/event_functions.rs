@@ -22,6 +22,9 @@ pub(crate) const LIFTED: f64 = 5e-11;
 /// The accuracy of the gap of a contact that lifts off, computed as the integral of its rate, relative to the
 /// length of the problem.
 const RISEN: f64 = 1e-11;
+/// A contact that has risen so far, relative to the length of the problem, while its gap became less, has a gap that does not
+/// belong to its normal.
+const FALLEN: f64 = 1e-8;
 /// The largest allowed rounding error of a closing gap, relative to the length of the problem.
 const HIDDEN: f64 = 1e-6;
 /// Relative to the smallest normal velocities that matter, this part is negligible.
@@ -531,8 +534,24 @@ impl Transition<'_> {
             let (gap, _) = self.gap_at(step, contact)?;
             let lifted =
                 if self.ends(contact) { 2.0 * self.low() } else { LIFTED * self.front.scales.length };
-            self.front.phases[contact] =
-                Phase::Open(if gap > lifted { Leaving::Apart } else { self.risen(contact, before, step)? });
+            if gap > lifted {
+                self.front.phases[contact] = Phase::Open(Leaving::Apart);
+                continue;
+            }
+            let risen = self.risen(contact, before, step)?;
+            let far = (4.0 * MANY * self.rounding_of_gap(contact)).max(FALLEN * self.front.scales.length);
+            if let Leaving::Lifted { risen, .. } = risen
+                && risen > far
+                && gap < -0.5 * risen
+                && step.h > 0.0
+                && !self.ends(contact)
+            {
+                // In short steps each is too small to tell.
+                let (start, velocity) = self.gap_in(step.t, step.start(), contact)?;
+                let rate = (gap - start) / step.h;
+                return Err(self.error(Some(contact), ErrorKind::GapRate { rate, velocity }));
+            }
+            self.front.phases[contact] = Phase::Open(risen);
         }
         Ok(())
     }

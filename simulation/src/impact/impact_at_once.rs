@@ -150,7 +150,7 @@ impl Transition<'_> {
         }
         let mut bounces = Vec::new();
         for (i, &contact) in contacts.iter().enumerate() {
-            let bounds = restitution[i] > 0.0 && restitution[i] < 1.0 && before[i] > 0.0 && rebound[i] > 0.0;
+            let bounds = restitution[i] > 0.0 && before[i] > 0.0 && rebound[i] > 0.0;
             if bounds && let Some(time) = self.last_bounce(contact, speeds, before[i], rebound[i])? {
                 restitution[i] = 0.0;
                 bounces.push((contact, time));

@@ -86,7 +86,7 @@ impl Transition<'_> {
         let plastic = Surface { e: 0.0, ..surface };
         let (outcome, hit) = solve(if faded { &plastic } else { &surface }, Vec::new())?;
         let (before, rebound) = (-outcome.approach.x, outcome.impact.velocity.x);
-        if faded || rebound <= 0.0 || rebound >= before {
+        if faded || rebound <= 0.0 {
             return Ok(hit);
         }
         match self.last_bounce(contact, speeds, before, rebound)? {
@@ -105,9 +105,12 @@ impl Transition<'_> {
         rebound: f64,
     ) -> Result<Option<f64>, SimulationError> {
         let pull = self.pull(contact, speeds, rebound)?;
-        let low = self.rises_little(pull, rebound);
-        let pair = self.pair(contact);
-        Ok(if low { pair.and_then(|pair| pair.bounces_for(before, rebound, -pull)) } else { None })
+        Ok(match (self.rises_little(pull, rebound), self.pair(contact)) {
+            // Bounces that lose nothing have no end: they are contact at once.
+            (true, Some(_)) if rebound >= before => Some(0.0),
+            (true, Some(pair)) => pair.bounces_for(before, rebound, -pull),
+            _ => None,
+        })
     }
 
     /// Whether a contact that separates with this speed is pressed down and rises by less than the tolerance.

@@ -186,7 +186,7 @@ impl fmt::Display for SimulationError {
             ),
             ErrorKind::Drift(gap) => write!(
                 out,
-                "the contact is closed, but its gap is {gap:e} m: the rate of the gap is not the velocity of the point along the normal (a face that ends, or a gap that does not belong to the normal)"
+                "the contact is closed, but its gap is {gap:e} m: the rate of the gap is not the velocity of the point along the normal (a face that ends, or a gap that does not belong to the normal), or the kinematical equations are nearly singular there"
             ),
             ErrorKind::GapRate { rate, velocity } => write!(
                 out,

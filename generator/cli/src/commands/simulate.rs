@@ -120,7 +120,9 @@ fn simulated(arguments: &Arguments) -> Outcome {
     let positive = |number: f64| number.is_finite() && number > 0.0;
     let max_step = arguments.max_step.is_none_or(positive);
     if !(arguments.until.is_none_or(f64::is_finite) && positive(step) && max_step) {
-        return Err(Stop::Call("--step and --max-step must be positive and --until finite".to_owned()));
+        return Err(Stop::Call(
+            "--step and --max-step must be positive and finite, and --until finite".to_owned(),
+        ));
     }
     arguments.outcomes.check()?;
     let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
@@ -132,6 +134,14 @@ fn simulated(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let state = arguments.state.state(&machine)?;
     let until = arguments.until.unwrap_or(state.time + DEFAULT_DURATION);
+    if let Some(longest) = arguments.max_step
+        && (until - state.time) / longest > MOST_STEPS
+    {
+        let steps = (until - state.time) / longest;
+        return Err(Stop::Call(format!(
+            "--max-step {longest:e} is too short: {steps:.1e} steps; give a longer one"
+        )));
+    }
     if until < state.time {
         return Err(Stop::Call(format!(
             "--until is {until}, before the start at t = {}: give a later time",
@@ -199,6 +209,8 @@ fn simulated(arguments: &Arguments) -> Outcome {
     pictures.save(&arguments.pictures, done.and(told))
 }
 
+/// Motions with more steps than this, by `--max-step`, would take days.
+const MOST_STEPS: f64 = 1e10;
 /// Largest number of steps: above it, adding 1 does not change a double.
 const MAX_STEPS: f64 = 9_007_199_254_740_992.0;
 /// Largest number of values that are stored until the end of a motion: some 200 MB of text.

@@ -107,7 +107,7 @@ impl From<Contact> for ContactReport {
             velocity: plain(contact.velocity),
             partials: contact.partials.map(|row| row.into_iter().map(|number| number + 0.0).collect()),
             remainder: plain(contact.remainder),
-            reduced: contact.reduced.into(),
+            reduced: <[f64; 6]>::from(contact.reduced).map(|number| number + 0.0),
             v: plain(contact.slip),
             characteristics: None,
         }
@@ -137,12 +137,14 @@ pub fn report<'a>(machine: &'a Machine, state: &State) -> Result<Report<'a>, Fai
     let wanted: Vec<Quantity> = QUANTITIES.into_iter().chain(Quantity::named()).chain(of_contacts).collect();
     let numbers: Numbers = machine.evaluate(state, &wanted)?;
     let (independent, dependent) = mechanism.speeds.split_at(state.speeds.len());
-    let get = |quantity| numbers.get(quantity).to_vec();
+    // Zeros have no sign for readers.
+    let plain = |list: &[f64]| list.iter().map(|number| number + 0.0).collect::<Vec<f64>>();
+    let get = |quantity| plain(numbers.get(quantity));
     let udot = get(Quantity::Accelerations).into_iter().chain(get(Quantity::DependentAccelerations));
     Ok(Report {
         speeds: independent.iter().map(|speed| speed.name.as_str()).collect(),
-        q: named(&mechanism.coordinates, state.coordinates.iter().copied()),
-        mass_matrix: numbers.rows(Quantity::MassMatrix).into_iter().map(<[f64]>::to_vec).collect(),
+        q: named(&mechanism.coordinates, plain(&state.coordinates).into_iter()),
+        mass_matrix: numbers.rows(Quantity::MassMatrix).into_iter().map(plain).collect(),
         forcing: get(Quantity::Forcing),
         udot: named(&mechanism.speeds, udot),
         qdot: named(&mechanism.coordinates, get(Quantity::CoordinateRates)),

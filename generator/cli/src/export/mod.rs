@@ -141,12 +141,13 @@ fn readme(module: &module::Module, scalar: &str, motion: Option<&motion::Motion>
     let made = if has("Parameters") { "&parameters, " } else { "" };
     let energy = module.routines.iter().find(|routine| routine.name == "kinetic_energy");
     let arguments: Vec<&str> = energy.map_or(Vec::new(), |routine| {
-        let of = |form: &module::Form| match form {
+        let of = |(name, form): &(String, module::Form)| match form {
             module::Form::Record(record) if record == "Coordinates" => "&coordinates, ",
             module::Form::Record(record) if record == "Speeds" => "&speeds, ",
+            module::Form::Number if name == "time" => "0, ",
             _ => "",
         };
-        routine.arguments.iter().map(|(_, form)| of(form)).collect()
+        routine.arguments.iter().map(of).collect()
     });
     let program = match energy {
         Some(_) if arguments.iter().all(|argument| !argument.is_empty()) => format!(
@@ -155,6 +156,9 @@ fn readme(module: &module::Module, scalar: &str, motion: Option<&motion::Motion>
         ),
         _ => String::new(),
     };
+    if !program.is_empty() {
+        declared += &format!("    {scalar} energy = 0;\n");
+    }
     let motions = motion.map_or_else(String::new, |motion| motion::readme(module, motion));
     format!(
         "# {0} for C\n\n{1}\n\n```sh\ncargo build --release                                    # target/release/lib{name}.a and lib{name}.so\n\
@@ -162,14 +166,14 @@ fn readme(module: &module::Module, scalar: &str, motion: Option<&motion::Motion>
          cc -I include main.c target/release/lib{name}.a -lm -o main\n```\n\n\
          The library and `include/{name}.h` are all that a team without cargo needs: whoever has cargo builds the library once per target, and both files are\n\
          handed on. They need nothing at run time but, on a desktop, the C library. A `main.c` that prints a number:\n\n\
-         ```c\n#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n{declared}    {2} energy = 0;\n\n{filled}    if ({name}_new({made}&mechanism) != {upper}_OK)\n        return 2;\n{program}    return 0;\n}}\n```\n\n\
+         ```c\n#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n{declared}\n{filled}    if ({name}_new({made}&mechanism) != {upper}_OK)\n        return 2;\n{program}    return 0;\n}}\n```\n\n\
          Every call answers a status; the answer is written only where the status is `{upper}_OK`. Nothing is allocated, and there is no hidden state.\n\n\
          ## Several mechanisms in one program\n\n\
          Each static library holds the Rust runtime, so a program links one of them. Shared libraries keep theirs to themselves: link as many as you like,\n\n\
          ```sh\ncc -I include main.c -L target/release -l{name} -Wl,-rpath,$PWD/target/release -lm -o main\n```\n\n\
          or, where there are no shared libraries, make one object of each static library, of which only the functions of the header can be seen from outside:\n\n\
          ```sh\nld -r -o {name}.o --whole-archive lib{name}.a\nobjcopy --wildcard --keep-global-symbol '{name}_*' {name}.o\n```\n{motions}",
-        module.mechanism, module.docs, scalar,
+        module.mechanism, module.docs,
     )
 }
 

@@ -50,9 +50,19 @@ impl Kinematics<'_> {
         for (slot, form) in solved {
             self.rates[slot - slots] = form;
         }
+        let of_quaternions: Vec<usize> =
+            (0..quaternions.len()).filter(|&i| quaternions[i].is_some()).collect();
         for (i, quaternion) in quaternions.into_iter().enumerate() {
             if let Some(form) = quaternion {
                 self.rates[i] = form;
+            }
+        }
+        // A quaternion relative to a frame that turns by a coordinate changes with the rate of that, too.
+        for &i in of_quaternions.iter().cycle().take(of_quaternions.len().pow(2)) {
+            let rates = &self.rates;
+            if rates[i].terms.keys().any(|&slot| slot >= slots) {
+                let known = |slot: usize| slot.checked_sub(slots).map(|rate| rates[rate].clone());
+                self.rates[i] = rates[i].substitute(known);
             }
         }
         self.set_time_derivative();

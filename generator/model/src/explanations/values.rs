@@ -26,8 +26,8 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: EXPONENT,
-        text: "Exponents are constants of at most 100 in size, unless base and exponent are plain numbers. \
-            The dimension of a power must be known when the model is read.",
+        text: "Constant exponents are fractions of at most 100 in size. An exponent that is not constant needs base and \
+            exponent to be plain numbers. The dimension of a power must be known when the model is read.",
         wrong: Some("bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^q1/12, 0, m*l^2/12] } }"),
         right: Some("bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }"),
     },

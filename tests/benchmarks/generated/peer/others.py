@@ -1,6 +1,8 @@
 """C code of a CasADi function by other generators, each from the same graph, by its own rules of simplification and its own search for what is common:
 wrenfold and SymForce."""
 
+import multiprocessing
+import queue
 import re
 
 import casadi
@@ -22,6 +24,9 @@ STEPS = {
     # what `vectors.reciprocal` writes
     "ERF": lambda a: 1 / a,
 }
+
+# What a generator may take for a routine, s: SymForce would take hours for the larger ones.
+PATIENCE = 60
 
 # The compiler may take the answer to lie apart from all arguments.
 FRAME = """#include <math.h>
@@ -89,3 +94,20 @@ def by_symforce(function):
 
 
 GENERATORS = {"wrenfold": by_wrenfold, "symforce": by_symforce}
+
+
+def written(generator, function):
+    """The C code, or `None` where it takes too long."""
+    answers = multiprocessing.Queue()
+    # A process of its own can be ended at any time.
+    work = multiprocessing.get_context("fork").Process(target=lambda: answers.put(GENERATORS[generator](function)))
+    work.start()
+    try:
+        text = answers.get(timeout=PATIENCE)
+    except queue.Empty:
+        if not work.is_alive():
+            raise RuntimeError(f"{generator} failed") from None
+        text = None
+    work.kill()
+    work.join()
+    return text

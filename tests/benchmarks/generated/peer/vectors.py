@@ -6,7 +6,7 @@ from pathlib import Path
 import casadi
 import numpy as np
 from casadi import SX, vertcat
-from others import GENERATORS
+from others import GENERATORS, written
 
 
 def clean(matrix):
@@ -115,10 +115,11 @@ def write(folder, inputs, routines, angles):
         used = {symbol.name() for symbol in casadi.symvar(result)}
         needed = [place for place in range(inputs[1].numel()) if not used.isdisjoint((names(inputs[1])[place], names(inputs[2])[place]))]
         listed[name] = {"length": result.numel(), "angles": [[place, angles(name)[place]] for place in needed]}
-        for generator, written in GENERATORS.items():
-            other = f"{name}_{generator}"
-            (folder / f"{other}.c").write_text(written(function))
-            listed[other] = listed[name]
+        for generator in GENERATORS:
+            text, other = written(generator, function), f"{name}_{generator}"
+            if text is not None:
+                (folder / f"{other}.c").write_text(text)
+                listed[other] = listed[name]
     (folder / "routines.json").write_text(json.dumps(listed))
 
 

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use hodograph::{ComponentKind, Mechanism as _, State};
+use hodograph_generator::files;
 use hodograph_gradients::{FitError, FittedStart, Trajectory, fit_start};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
@@ -12,7 +13,7 @@ use nalgebra::DMatrix;
 use crate::stop::{Outcome, Stop};
 
 /// The largest file, in bytes.
-const MAX_BYTES: u64 = 1 << 30;
+const MAX_BYTES: usize = 1 << 30;
 
 /// Measured motions.
 pub struct Motions {
@@ -67,15 +68,9 @@ impl Motions {
         start: &State<'_>,
         outputs: &[String],
     ) -> Outcome<Self> {
-        let size = std::fs::metadata(path).map_err(|error| Stop::unreadable(path, &error))?.len();
-        if size > MAX_BYTES {
-            return Err(Stop::Call(format!("{} is larger than 1 GiB", path.display())));
-        }
+        let text = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
         let wrong = |what: String| Stop::Call(format!("{}: {what}", path.display()));
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_path(path)
-            .map_err(|error| wrong(error.to_string()))?;
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
         for name in ["t", "trajectory"] {
             if index_of(mechanism, name).is_some() {
                 return Err(wrong(format!(

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use hodograph_generator::files;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_simulation::Drive;
 
@@ -76,9 +77,12 @@ fn index(mechanism: &Mechanism, name: &str) -> Result<usize, Failure> {
     })
 }
 
+/// The largest table, in bytes.
+const MAX_BYTES: usize = 1 << 30;
+
 /// The times and the columns of a CSV file, linear between its rows and constant outside.
 fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Functions)> {
-    let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
+    let text = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
     let wrong = |line: usize, message: &str| Stop::Call(format!("{}:{line}: {message}", path.display()));
     // Some programs write a byte order mark first.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);

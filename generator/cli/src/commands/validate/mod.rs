@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use hodograph::{ComponentKind, Mechanism as _};
+use hodograph_generator::files;
 use hodograph_gradients::statistics::quantile;
 use hodograph_gradients::validation::{Measure, Noise, floor, noise_replicate, predict};
 use hodograph_gradients::{By, Trajectory, with_values};
@@ -152,10 +153,13 @@ impl Task<'_> {
     }
 }
 
+/// The largest answer of a fit, in bytes.
+const MAX_BYTES: usize = 1 << 26;
+
 fn report(arguments: &Arguments, courses: &mut Vec<Course>) -> Outcome<Report> {
     let call = |path: &Path, what: String| Stop::Call(format!("{}: {what}", path.display()));
     let text =
-        std::fs::read_to_string(&arguments.fit).map_err(|error| Stop::unreadable(&arguments.fit, &error))?;
+        files::text(&arguments.fit, MAX_BYTES).map_err(|error| Stop::unreadable(&arguments.fit, &error))?;
     let fitted: Fitted = serde_json::from_str(&text).map_err(|error| {
         call(&arguments.fit, format!("is no answer of `hodograph fit --format json`: {error}"))
     })?;

@@ -32,6 +32,8 @@ struct Product {
     /// the place of the divisors
     divisors: Option<Span>,
     vector: Option<(Vector, Span)>,
+    /// constant factors, none of which is 0, have a product that a double cannot hold
+    underflows: bool,
     /// a mistake has been reported: the product has no value
     wrong: bool,
 }
@@ -49,6 +51,7 @@ impl Product {
             denominator: Vec::new(),
             divisors: None,
             vector: None,
+            underflows: false,
             wrong: false,
         }
     }
@@ -66,8 +69,11 @@ impl Product {
             self.provenance.times(&factor.provenance)
         };
         self.constant = match (self.constant, factor.constant) {
-            (Some(so_far), Some(next)) if divides => Some(so_far / next),
-            (Some(so_far), Some(next)) => Some(so_far * next),
+            (Some(so_far), Some(next)) => {
+                let together = if divides { so_far / next } else { so_far * next };
+                self.underflows |= too_small(together) && so_far != 0.0 && next != 0.0;
+                Some(together)
+            }
             _ => None,
         };
         self.exact = match (self.exact.take(), &factor.exact) {
@@ -184,7 +190,17 @@ impl Lowering<'_> {
                 product.wrong = true;
             }
         }
+        if product.underflows && !product.wrong {
+            return self.out_of_range(span);
+        }
         product.finish(span)
+    }
+
+    /// The error of a constant other than 0 that a double cannot hold, or not with all its digits.
+    fn out_of_range(&mut self, span: Span) -> Typed {
+        let error = Diagnostic::new(codes::NUMBER_RANGE, span, "this constant is out of range");
+        self.report(error.help("its size must lie between 1e-300 and 1e300"));
+        Typed::poison(span)
     }
 
     /// `base ^ exponent`
@@ -199,6 +215,9 @@ impl Lowering<'_> {
             (Some(b), Some(e)) => Some(b.powf(e)),
             _ => None,
         };
+        if constant.is_some_and(too_small) && base.constant != Some(0.0) {
+            return self.out_of_range(span);
+        }
         let small = exponent.exact.as_ref().and_then(small_ratio);
         if let Some(value) = exponent.constant
             && (value.abs() > f64::from(MAX_EXPONENT) || (exponent.exact.is_some() && small.is_none()))
@@ -261,8 +280,41 @@ impl Lowering<'_> {
         };
         let one = small == Some(Exponent::from_integer(1));
         let traits = if one { base.traits } else { base.traits.bent().plus(exponent.traits.bent()) };
-        let value = TypedValue::Scalar(Scalar::Pow(Box::new(b), Box::new(e)));
+        let power = Scalar::Pow(Box::new(b), Box::new(e));
+        if bits(&power) > MOST_BITS {
+            let message = "this constant has too many digits: powers of numbers are computed exactly";
+            let error = Diagnostic::new(codes::NUMBER_RANGE, span, message);
+            self.report(error.help("write the number that it is, with the digits that matter"));
+            return Typed::poison(span);
+        }
+        let value = TypedValue::Scalar(power);
         Typed { value, dimension, provenance, traits, constant, exact, span }
+    }
+}
+
+/// Whether a constant that is not 0 is less than what numbers are bounded by.
+fn too_small(value: f64) -> bool {
+    value.abs() < 1e-300
+}
+
+/// The most bits of a number that a power of numbers may have: it is computed exactly.
+const MOST_BITS: u64 = 100_000;
+
+/// About how many bits a number has if it is computed exactly; 0 of what is no number.
+fn bits(scalar: &Scalar) -> u64 {
+    match scalar {
+        Scalar::Number(number) => number.0.numer().bits() + number.0.denom().bits(),
+        Scalar::Neg(of) => bits(of),
+        Scalar::Add(all) | Scalar::Mul(all) => all.iter().map(bits).fold(0, u64::saturating_add),
+        Scalar::Div(a, b, _) => bits(a).saturating_add(bits(b)),
+        Scalar::Pow(base, exponent) => match &**exponent {
+            Scalar::Number(number) => {
+                let times = number.0.numer().magnitude().to_u64().unwrap_or(u64::MAX);
+                bits(base).saturating_mul(times)
+            }
+            _ => 0,
+        },
+        _ => 0,
     }
 }
 
