@@ -201,7 +201,7 @@ const CASES: &[Case] = &[
     ("x_const", &[(9, "points { G = O - l/2*B.y; P = O - 1e200*1e200*l*B.y; }")],
         &["E033 10:27"]),
     ("x_const2", &[(9, "points { G = O - l/2*B.y; P = O - 1e-200*1e-200*l*B.y; }")],
-        &["E081 18:12"]),
+        &["E033 10:35"]),
     ("x_fact", &[(9, "points { G = O - l/2*B.y; P = O - 10^99*l*B.y; }")],
         &["E076 5:10"]),
     ("x_fact2", &[(9, "points { G = O - l/2*B.y; P = O - 10^9999999*l*B.y; }")],

@@ -336,7 +336,10 @@ impl<'a> Parser<'a> {
             }
             Some(TokenKind::Sign('=')) if self.before_is('=') => error.help("an equation has one `=`"),
             Some(TokenKind::Sign('<' | '>')) => error.help("there are no inequalities in a model"),
-            Some(_) => error,
+            Some(_) => match cure(what) {
+                Some(help) => error.help(help),
+                None => error,
+            },
         });
         Lost
     }
@@ -419,6 +422,24 @@ impl<'a> Parser<'a> {
         }
         docs.0
     }
+}
+
+/// What to write where this was expected.
+fn cure(what: &str) -> Option<String> {
+    let begins = |with: &str| what.starts_with(with);
+    let help = if what == "an expression" {
+        "an expression consists of numbers, names, functions and `+ - * / ^`"
+    } else if begins("the name of an axis") {
+        "as in `N.x`, `N.rotate(z, q)` or `N.vec(a, b, c)`"
+    } else if begins("the name") || begins("a name") {
+        "names begin with a letter, and consist of letters, digits and `_`"
+    } else if begins("`:` after the name of a field") {
+        "a field is written `name: value`"
+    } else {
+        return begins("a section")
+            .then(|| format!("the sections are {}", Section::ALL.map(Section::word).join(", ")));
+    };
+    Some(help.to_owned())
 }
 
 /// Lines of documentation on their way to one text.

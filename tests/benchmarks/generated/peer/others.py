@@ -38,7 +38,7 @@ double *restrict out = res[0];
 """
 
 
-def follow(function, given, constant):
+def follow(function, given, constant, system):
     """The answers of a function in the expressions of another system; `given` has a list of symbols for each argument."""
     known, answers = {}, [None] * function.numel_out(0)
     for place in range(function.n_instructions()):
@@ -51,7 +51,8 @@ def follow(function, given, constant):
         elif name == "OUTPUT":
             answers[to[1]] = known[of[0]]
         else:
-            known[to[0]] = STEPS[name](*(known[place] for place in of))
+            step = STEPS[name] if name in STEPS else getattr(system, name.lower())
+            known[to[0]] = step(*(known[place] for place in of))
     return answers
 
 
@@ -67,7 +68,7 @@ def by_wrenfold(function):
 
     def routine(a, b, c, d, e):
         given = [[vector[place] for place in range(size)] for vector, size in zip((a, b, c, d, e), sizes(function))]
-        answers = [constant(answer) if isinstance(answer, (int, float)) else answer for answer in follow(function, given, constant)]
+        answers = [constant(answer) if isinstance(answer, (int, float)) else answer for answer in follow(function, given, constant, sym)]
         return [code_generation.OutputArg(expression=sym.vector(*answers), name="out")]
 
     vectors = [type_annotations.Annotated[sym.MatrixExpr, type_annotations.Shape(rows=size, cols=1)] for size in sizes(function)]
@@ -75,7 +76,7 @@ def by_wrenfold(function):
     text = str(code_generation.generate_function(routine, code_generation.CppGenerator()))
     lines = [line.strip() for line in text.splitlines()]
     kept = [line for line in lines if line.startswith(("const Scalar", "_out("))]
-    text = "\n".join(kept).replace("const Scalar", "const double").replace("static_cast<Scalar>", "")
+    text = "\n".join(kept).replace("const Scalar", "const double").replace("static_cast<Scalar>", "").replace("std::", "")
     return FRAME.format(re.sub(r"\b_(\w+)\((\d+), 0\)", r"\1[\2]", text))
 
 
@@ -86,7 +87,7 @@ def by_symforce(function):
         return symforce.S(int(value)) if value == int(value) else symforce.S(value)
 
     given = [[symforce.Symbol(f"{name}{entry}_") for entry in range(size)] for name, size in zip("abcde", sizes(function))]
-    answers = [symforce.S(answer) for answer in follow(function, given, constant)]
+    answers = [symforce.S(answer) for answer in follow(function, given, constant, symforce)]
     shared, rest = symforce.cse(answers)
     lines = [f"const double {name} = {symengine.ccode(value)};" for name, value in shared]
     lines += [f"out[{place}] = {symengine.ccode(value)};" for place, value in enumerate(rest)]

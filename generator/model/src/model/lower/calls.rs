@@ -312,7 +312,10 @@ impl Lowering<'_> {
                 ExprKind::Error => frames.push(None),
                 _ => {
                     let message = "`angular_velocity` takes the names of frames or bodies";
-                    self.error(codes::WRONG_KIND, argument.span, message);
+                    let error = Diagnostic::new(codes::WRONG_KIND, argument.span, message);
+                    self.report(
+                        error.help("as in `angular_velocity(B)`, or `angular_velocity(B, A)` relative to A"),
+                    );
                     frames.push(None);
                 }
             }

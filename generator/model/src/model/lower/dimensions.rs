@@ -82,14 +82,16 @@ impl Lowering<'_> {
             .label(format!("this is {}", in_words(dimension)));
         let error = match self.declaration(typed) {
             // the use is right and the declaration wrong, or the reverse: both are shown
-            Some((name, place)) => error.related(place, format!("`{name}` is declared here")),
+            Some((name, place)) => error
+                .related(place, format!("`{name}` is declared here"))
+                .help(format!("correct this expression, or the unit of `{name}`")),
             None if dimension.is_none() => error.help(format!(
                 "a number has no unit; declare a parameter with one, such as `a: {wanted} = ..`"
             )),
             None if wanted.is_none() && dimension == Dimension::of(0, 0, 1) => error.help(
                 "a number has no unit; declare an angular frequency, such as `w: rad/s = ..`, and write `w*time`",
             ),
-            None => error,
+            None => error.help("multiply by what is missing, or correct the unit of a declaration"),
         };
         let says = format!("{what} must be {needed}");
         self.contradiction(error, typed.provenance.clone(), wanted.over(&dimension), says);
@@ -116,6 +118,8 @@ impl Lowering<'_> {
         let mut error = error;
         if is_number(model, wanted) || is_number(other, dimension) {
             error = error.help("a plain number has no unit; declare a parameter with one");
+        } else {
+            error = error.help("multiply by what is missing, or correct the unit of a declaration");
         }
         let says = format!("this stands beside {}", quantity(wanted));
         self.contradiction(error, provenance, wanted.over(&dimension), says);

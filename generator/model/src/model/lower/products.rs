@@ -215,18 +215,20 @@ impl Lowering<'_> {
             (Some(b), Some(e)) => Some(b.powf(e)),
             _ => None,
         };
-        if constant.is_some_and(too_small) && base.constant != Some(0.0) {
-            return self.out_of_range(span);
-        }
         let small = exponent.exact.as_ref().and_then(small_ratio);
         if let Some(value) = exponent.constant
             && (value.abs() > f64::from(MAX_EXPONENT) || (exponent.exact.is_some() && small.is_none()))
         {
             let message = format!("exponents are fractions between -{MAX_EXPONENT} and {MAX_EXPONENT}");
             self.report(
-                Diagnostic::new(codes::EXPONENT, exponent.span, message).label("this is out of range"),
+                Diagnostic::new(codes::EXPONENT, exponent.span, message)
+                    .label("this is out of range")
+                    .help("write the number that the power is, or a product of powers"),
             );
             return Typed::poison(span);
+        }
+        if constant.is_some_and(too_small) && base.constant != Some(0.0) {
+            return self.out_of_range(span);
         }
         if exponent.constant.is_some_and(|e| e < 0.0) && self.vanishes(&base) {
             let error = Diagnostic::new(codes::ZERO_DIVISOR, span, "a negative power of zero");

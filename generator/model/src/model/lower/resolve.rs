@@ -155,10 +155,8 @@ impl Lowering<'_> {
         if let Some(place) = self.names.place(&name.text) {
             error = error.related(place, "declared here");
         }
-        if let Some(help) = self.of_the_kind(&name.text, needed) {
-            error = error.help(help);
-        }
-        self.report(error);
+        let help = self.of_the_kind(&name.text, needed);
+        self.report(error.help(help.unwrap_or_else(|| format!("write the name of {}", needed.trim()))));
     }
 
     /// What of the needed kind belongs to what was named.

@@ -152,7 +152,8 @@ impl Lowering<'_> {
         let value = typed.constant?;
         if value < 0.0 {
             let message = format!("{what} is not negative");
-            self.report(Diagnostic::new(codes::SURFACE, field.value.span, message));
+            let error = Diagnostic::new(codes::SURFACE, field.value.span, message);
+            self.report(error.help("give a positive number, or 0 for none"));
         }
         Some(value)
     }
