@@ -41,10 +41,10 @@ fn devices_are_no_models() {
     let state = run(&["eval", &two_sleds, "--state", "/dev/zero"]);
     assert_eq!(state.code, 2);
     assert!(state.stderr.contains("the state from /dev/zero: it is a pipe or a device"), "{}", state.stderr);
-    let arm = model("puma_560");
+    let (arm, pendulum) = (model("puma_560"), model("spherical_pendulum"));
     for command in [
-        &["simulate", &arm, "--inputs", "/dev/zero"][..],
-        &["fit", &two_sleds, "/dev/zero", "--parameters", "e"],
+        &["simulate", &arm, "--inputs", "/dev/zero", "--mu", "0", "--e", "0", "--law", "newton"][..],
+        &["fit", "/dev/zero", &pendulum, "--parameters", "e", "--mu", "0", "--e", "0", "--law", "newton"],
         &["validate", "/dev/zero", "/dev/zero"],
     ] {
         let run = run(command);

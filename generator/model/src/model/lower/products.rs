@@ -283,7 +283,7 @@ impl Lowering<'_> {
         let one = small == Some(Exponent::from_integer(1));
         let traits = if one { base.traits } else { base.traits.bent().plus(exponent.traits.bent()) };
         let power = Scalar::Pow(Box::new(b), Box::new(e));
-        if bits(&power) > MOST_BITS {
+        if constant.is_some() && bits(&power) > MOST_BITS {
             let message = "this constant has too many digits: powers of numbers are computed exactly";
             let error = Diagnostic::new(codes::NUMBER_RANGE, span, message);
             self.report(error.help("write the number that it is, with the digits that matter"));
