@@ -143,7 +143,7 @@ pub fn report<'a>(machine: &'a Machine, state: &State) -> Result<Report<'a>, Fai
     let udot = get(Quantity::Accelerations).into_iter().chain(get(Quantity::DependentAccelerations));
     Ok(Report {
         speeds: independent.iter().map(|speed| speed.name.as_str()).collect(),
-        q: named(&mechanism.coordinates, plain(&state.coordinates).into_iter()),
+        q: named(&mechanism.coordinates, plain(&state.coordinates)),
         mass_matrix: numbers.rows(Quantity::MassMatrix).into_iter().map(plain).collect(),
         forcing: get(Quantity::Forcing),
         udot: named(&mechanism.speeds, udot),
