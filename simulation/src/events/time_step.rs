@@ -35,8 +35,8 @@ const ADVANCE: f64 = 1e-2;
 const STUCK: usize = 1200;
 const CONTACTS: usize = 4;
 const NOTHING: f64 = 2e-8;
-/// Where steps hardly advance, gaps are looked at after these times, in units of the time of the problem: what has no value there is the
-/// cause.
+/// Where steps hardly advance, gaps are looked at after these times, in units of the time of the problem: one that
+/// has no value there is the cause.
 const AHEAD: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
 /// After so many steps in a row slip that would end at once is taken for slip whose direction turns.
 const AGAIN: usize = 2;

@@ -168,6 +168,11 @@ impl Transition<'_> {
     /// The error of contacts that approach by prescribed motion and leave what lies between them no room: no impulses
     /// stop all of them, not even without friction. `None` if some do.
     pub(crate) fn without_room(&self, contacts: &[usize], speeds: &[f64]) -> Option<SimulationError> {
+        // Without speeds no contact approaches, unless motion is prescribed: impulses that stop all are possible then.
+        let at_rest = self.struck_support(contacts, &vec![0.0; speeds.len()]).ok()?;
+        if (0..contacts.len()).all(|i| at_rest.velocity[3 * i] >= 0.0) {
+            return None;
+        }
         let support = self.struck_support(contacts, speeds).ok()?;
         let none = vec![0.0; contacts.len()];
         if solve(&support, &none, &none).is_ok() {

@@ -97,7 +97,8 @@ def lower(matrix):
 
 
 def write(folder, inputs, routines, angles):
-    """Each routine as `<name>.c`, and `<name>_<generator>.c` for other generators of the same graph, with a function of the inputs (the second and third are sines and cosines); `routines.json` lists them.
+    """Each routine as `<name>.c`, and `<name>_<generator>.c` for other generators of the same graph, with a function of
+    the inputs (the second and third are sines and cosines); `routines.json` lists them.
 
     `angles` gives for a routine its angles, as C expressions of the coordinates `q`.
     """

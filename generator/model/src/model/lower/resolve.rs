@@ -156,7 +156,7 @@ impl Lowering<'_> {
             error = error.related(place, "declared here");
         }
         let help = self.of_the_kind(&name.text, needed);
-        self.report(error.help(help.unwrap_or_else(|| format!("write the name of {}", needed.trim()))));
+        self.report(error.help(help.unwrap_or_else(|| format!("write the name of {needed}"))));
     }
 
     /// What of the needed kind belongs to what was named.
