@@ -22,9 +22,51 @@ pub fn help_of_law() -> String {
     format!("hypothesis of restitution, one of {} [default: that of the model]", Law::NAMES.join(", "))
 }
 
-/// The surface of a contact: the given values, and for the others those of the model, which are reported on
-/// standard error.
-pub fn stated_in(mechanism: &dyn Contacts<f64>, contact: usize, given: GivenSurface) -> GivenSurface {
+/// What contacts take from the model, for they are not given it: one note for all that take the same.
+#[derive(Debug, Default)]
+pub struct FromModel {
+    /// what is taken, and the names of the contacts
+    notes: Vec<(String, Vec<String>)>,
+}
+
+/// How many contacts are named in a note, unless it tells the first ones, the last one and their number.
+const MOST_NAMES: usize = 4;
+
+impl FromModel {
+    /// Notes what a contact takes, such as `mu = 0.3`.
+    pub fn add(&mut self, contact: &str, parts: &[String]) {
+        if parts.is_empty() {
+            return;
+        }
+        let taken = parts.join(", ");
+        match self.notes.iter_mut().find(|(other, _)| *other == taken) {
+            Some((_, names)) => names.push(contact.to_string()),
+            None => self.notes.push((taken, vec![contact.to_string()])),
+        }
+    }
+
+    /// Writes the notes to standard error.
+    pub fn say(self) {
+        for (taken, names) in self.notes {
+            let who = match &names[..] {
+                [name] => format!("contact {name}"),
+                [first, second, .., last] if names.len() > MOST_NAMES => {
+                    format!("{} contacts {first}, {second}, .. {last}", names.len())
+                }
+                _ => format!("contacts {}", names.join(", ")),
+            };
+            output::say(format_args!("note: {who}: {taken} of the model"));
+        }
+    }
+}
+
+/// The surface of a contact: the given values, and for the others those of the model, which are noted.
+pub fn stated_in(
+    mechanism: &dyn Contacts<f64>,
+    contact: usize,
+    given: GivenSurface,
+    notes: &mut FromModel,
+) -> GivenSurface {
     let Some(stated) = mechanism.surface(contact) else { return given };
     let says = [
         given.mu.is_none().then(|| format!("mu = {}", stated.mu)),
@@ -32,11 +74,8 @@ pub fn stated_in(mechanism: &dyn Contacts<f64>, contact: usize, given: GivenSurf
         given.law.is_none().then(|| format!("law = {}", stated.law.name())),
     ];
     let says: Vec<String> = says.into_iter().flatten().collect();
-    if !says.is_empty() {
-        let name =
-            mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
-        output::say(format_args!("note: contact {name}: {} of the model", says.join(", ")));
-    }
+    let name = mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
+    notes.add(name, &says);
     given.or(stated.into())
 }
 
@@ -63,7 +102,10 @@ impl SurfaceArguments {
         let law = self.law.as_deref().map(law).transpose()?;
         let given = GivenSurface { mu: self.mu, e: self.e, law };
         finite(given, ["--mu", "--e"])?;
-        stated_in(mechanism, contact, given).whole().ok_or_else(|| {
+        let mut notes = FromModel::default();
+        let surface = stated_in(mechanism, contact, given, &mut notes);
+        notes.say();
+        surface.whole().ok_or_else(|| {
             let name =
                 mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
             Stop::Call(format!(

@@ -81,8 +81,23 @@ pub(super) struct Elimination {
 
 impl Elimination {
     /// Eliminates a matrix given by columns; pivots up to `singular` times the first one count as zero.
-    pub fn new(mut lu: Square, n: usize, singular: f64) -> Self {
-        let (mut rows, mut columns) = (vector(n, |i| i as f64), vector(n, |i| i as f64));
+    pub fn new(lu: Square, n: usize, singular: f64) -> Self {
+        let (rows, columns) = (vector(n, |i| i as f64), vector(n, |i| i as f64));
+        let mut elimination = Self { lu, rows, columns, n, rank: 0, even: true };
+        // The loops of the sizes that two contacts have are written out by the compiler.
+        match n {
+            2 => elimination.eliminate(2, singular),
+            3 => elimination.eliminate(3, singular),
+            4 => elimination.eliminate(4, singular),
+            6 => elimination.eliminate(6, singular),
+            _ => elimination.eliminate(n, singular),
+        }
+        elimination
+    }
+
+    #[inline(always)]
+    fn eliminate(&mut self, n: usize, singular: f64) {
+        let (lu, rows, columns) = (&mut self.lu[..n * n], &mut self.rows[..n], &mut self.columns[..n]);
         let (mut rank, mut even) = (0, true);
         let mut first = 0.0;
         while rank < n {
@@ -128,7 +143,7 @@ impl Elimination {
             }
             rank += 1;
         }
-        Self { lu, rows, columns, n, rank, even }
+        (self.rank, self.even) = (rank, even);
     }
 
     /// The pivots up to the rank; their product is the determinant of P A Q.
@@ -152,31 +167,32 @@ impl Elimination {
 
     /// A solution x of the first equations up to the rank, with as many zeros as possible.
     pub fn solve(&self, right: &[f64]) -> Vector {
-        let r = self.rank;
-        let mut y = vector(r, |i| right[self.rows[i] as usize]);
-        for j in 0..r {
+        match self.rank {
+            2 if self.n == 2 => self.solved(2, 2, right),
+            3 if self.n == 3 => self.solved(3, 3, right),
+            4 if self.n == 4 => self.solved(4, 4, right),
+            6 if self.n == 6 => self.solved(6, 6, right),
+            rank => self.solved(self.n, rank, right),
+        }
+    }
+
+    #[inline(always)]
+    fn solved(&self, n: usize, rank: usize, right: &[f64]) -> Vector {
+        let (lu, right) = (&self.lu[..n * n], &right[..n]);
+        let mut numbers = vector(n, |i| right[self.rows[i] as usize]);
+        let y = &mut numbers[..rank];
+        for j in 0..rank {
             let known = y[j];
-            for i in j + 1..r {
-                y[i] -= self.entry(i, j) * known;
+            for (y, entry) in y.iter_mut().zip(&lu[j * n..][..n]).skip(j + 1) {
+                *y -= entry * known;
             }
         }
-        self.back(&mut y);
-        let mut x = Vector::zeros(right.len());
+        back(lu, n, y);
+        let mut x = Vector::zeros(n);
         for (y, &column) in y.iter().zip(self.columns.iter()) {
             x[column as usize] = *y;
         }
         x
-    }
-
-    /// U^-1 applied to the first entries up to the rank.
-    fn back(&self, y: &mut [f64]) {
-        for j in (0..self.rank).rev() {
-            y[j] /= self.entry(j, j);
-            let known = y[j];
-            for (i, y) in y.iter_mut().enumerate().take(j) {
-                *y -= self.entry(i, j) * known;
-            }
-        }
     }
 
     /// An orthonormal basis of the null space of A, by columns.
@@ -185,7 +201,7 @@ impl Elimination {
         let mut basis = DMatrix::zeros(n, n - r);
         for free in r..n {
             let mut y = vector(r, |i| -self.entry(i, free));
-            self.back(&mut y);
+            back(&self.lu, n, &mut y);
             for (y, &column) in y.iter().zip(self.columns.iter()) {
                 basis[(column as usize, free - r)] = *y;
             }
@@ -193,6 +209,19 @@ impl Elimination {
         }
         orthonormal(&mut basis);
         basis
+    }
+}
+
+/// U^-1 applied to as many numbers as the rank.
+#[inline(always)]
+fn back(lu: &[f64], n: usize, y: &mut [f64]) {
+    for j in (0..y.len()).rev() {
+        let column = &lu[j * n..][..=j];
+        y[j] /= column[j];
+        let known = y[j];
+        for (y, entry) in y[..j].iter_mut().zip(column) {
+            *y -= entry * known;
+        }
     }
 }
 

@@ -123,9 +123,14 @@ pub(crate) fn found(
     // One refinement.
     let more = elimination.solve(&residual(&matrix, &x, &right));
     x.iter_mut().zip(more.iter()).for_each(|(x, more)| *x += more);
-    let left = residual(&matrix, &x, &right);
-    unknowns.consistent(problem, &matrix, &x, &left)?;
     let unique = elimination.rank == m;
+    if !x.iter().all(|x| x.is_finite()) {
+        return Err(Impossible::NoForces { contact: 0, left: f64::INFINITY });
+    }
+    // Equations that are as many as the rank are solved to rounding.
+    if !unique {
+        unknowns.consistent(problem, &matrix, &x, &residual(&matrix, &x, &right))?;
+    }
     let slides = modes.iter().any(|mode| matches!(mode, Mode::Slide(_)));
     let any = match wanted {
         Wanted::Any => true,
@@ -330,10 +335,8 @@ impl Unknowns {
                 worst = Some((lack, a));
             }
         }
-        let finite = x.iter().all(|x| x.is_finite());
         match worst {
-            None if finite => Ok(()),
-            None => Err(Impossible::NoForces { contact: 0, left: f64::INFINITY }),
+            None => Ok(()),
             Some((left, a)) => Err(Impossible::NoForces { contact: self.list[a].contact, left }),
         }
     }

@@ -131,7 +131,7 @@ impl Options {
         }
         if tolerance > GREATEST_TOLERANCE {
             return Err(format!(
-                "the tolerance is {tolerance}: it is relative, and the greatest is {GREATEST_TOLERANCE}"
+                "the tolerance is {tolerance:?}: it is relative, and the greatest is {GREATEST_TOLERANCE}"
             ));
         }
         Ok(())

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use roxmltree::{Attribute, Node};
 
 use super::lines::Lines;
+use super::poses::{Pose, of_quaternion};
 
 /// Types of joints that URDF knows.
 const TYPES: [&str; 6] = ["fixed", "revolute", "continuous", "prismatic", "planar", "floating"];
@@ -104,6 +105,17 @@ impl<'a> Checker<'a> {
     fn pose(&mut self, node: Node) {
         for origin in self.at_most_one(node, "origin") {
             ["xyz", "rpy"].iter().for_each(|name| self.three(origin, name, false));
+            if let Some(attribute) = origin.attribute_node("quat_xyzw") {
+                if origin.has_attribute("rpy") {
+                    self.at_value(origin, attribute, "there is an `rpy` too: keep one");
+                } else if quaternion(origin).is_err() {
+                    self.at_value(
+                        origin,
+                        attribute,
+                        "write four finite numbers, not all zero, the scalar part last",
+                    );
+                }
+            }
         }
     }
 
@@ -183,6 +195,13 @@ pub fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64
     read.ok_or_else(|| format!("`{name}=\"{text}\"` is not {wanted}"))
 }
 
+/// Roll, pitch and yaw of the attribute `quat_xyzw`, which URDF has since its version 1.2.
+fn quaternion(origin: Node) -> Result<Vector3<f64>, String> {
+    let [x, y, z, w] = numbers(Some(origin), "quat_xyzw")?;
+    let turn = of_quaternion([w, x, y, z]).ok_or("`quat_xyzw` is zero: it is no rotation")?;
+    Ok(Pose { turn, ..Pose::identity() }.rpy())
+}
+
 /// The `<origin>` of an element: its place, and roll, pitch and yaw of its axes; zero by default.
 ///
 /// # Errors
@@ -194,5 +213,9 @@ pub fn pose(element: Node) -> Result<(Vector3<f64>, Vector3<f64>), String> {
         None => Ok(Vector3::zeros()),
         Some(_) => numbers(origin, name).map(Vector3::from),
     };
-    Ok((three("xyz")?, three("rpy")?))
+    let rpy = match origin.filter(|origin| origin.has_attribute("quat_xyzw")) {
+        Some(origin) => quaternion(origin)?,
+        None => three("rpy")?,
+    };
+    Ok((three("xyz")?, rpy))
 }

@@ -89,6 +89,23 @@ fn fixed_links_become_one_body() {
     has(&model, "tool_axes = base_axes.rotate(x, pi);");
 }
 
+/// An origin may be turned by a quaternion, of any length, whose scalar part is the last.
+#[test]
+fn an_origin_is_turned_by_a_quaternion() {
+    let with = |origin: &str| {
+        let body = link("base").to_owned() + link("arm") + joint("j", "revolute", "base", "arm", origin);
+        model(&body, &Options::default()).0
+    };
+    for (quaternion, rpy) in [
+        ("0 0 0 2", "0 0 0"),
+        ("1 0 0 1", "1.5707963267948966 0 0"),
+        ("-0.6 0 0 -0.8", "1.2870022175865687 0 0"),
+    ] {
+        let turned = with(&format!("<origin xyz=\"0 0 1\" quat_xyzw=\"{quaternion}\"/>"));
+        assert_eq!(turned, with(&format!("<origin xyz=\"0 0 1\" rpy=\"{rpy}\"/>")));
+    }
+}
+
 #[test]
 fn odd_inertias_of_fixed_or_unused_links_do_not_matter() {
     let speck = "<link name=\"speck\"><inertial><mass value=\"0\"/><inertia ixx=\"1e-6\" ixy=\"0\" ixz=\"0\" iyy=\"0\" \
@@ -168,6 +185,14 @@ fn mistakes_are_reported_with_their_place() {
         (
             two(joint("j", "revolute", "base", "arm", "<origin rpy=\"0 0 right\"/>")),
             "`rpy=\"0 0 right\"` of <origin> of joint `j`: write three finite numbers",
+        ),
+        (
+            two(joint("j", "revolute", "base", "arm", "<origin rpy=\"0 0 0\" quat_xyzw=\"0 0 0 1\"/>")),
+            "`quat_xyzw=\"0 0 0 1\"` of <origin> of joint `j`: there is an `rpy` too: keep one",
+        ),
+        (
+            two(joint("j", "revolute", "base", "arm", "<origin quat_xyzw=\"0 0 0 0\"/>")),
+            "write four finite numbers, not all zero, the scalar part last",
         ),
         (two(joint("j", "revolute", "base", "arm", "<axis/>")), "<axis> of joint `j` has no attribute `xyz`"),
         (two(joint("j", "revolute", "base", "arm", "<dynamics damping=\"low\"/>")), "`damping=\"low\"`"),

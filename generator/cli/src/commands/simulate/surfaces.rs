@@ -8,7 +8,7 @@ use crate::json::{Failure, Kind};
 use crate::output;
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
-use crate::surface::{checked, help_of_law, law, stated_in};
+use crate::surface::{FromModel, checked, help_of_law, law, stated_in};
 
 /// The options for surfaces.
 #[derive(Clone, Debug, clap::Args)]
@@ -99,18 +99,21 @@ impl MotionSurfaces {
             laws.push((place, law.or(all_laws.clone())));
         }
         // Values that the options do not give are those of the model.
+        let mut notes = FromModel::default();
         for contact in 0..mechanism.count(ComponentKind::Contact) {
             let has_gap = !matches!(mechanism.gap(contact, state), Ok(None));
             if has_gap && own.iter().all(|(other, _)| *other != contact) {
-                own.push((contact, stated_in(mechanism, contact, all)));
+                own.push((contact, stated_in(mechanism, contact, all, &mut notes)));
             }
         }
         for contact in 0..mechanism.count(ComponentKind::Contact) {
             let replaced = laws.iter().any(|(other, _)| *other == contact);
             if !replaced {
-                laws.push((contact, stated_law(mechanism, contact, name(contact), all_laws.clone())?));
+                let stated = stated_law(mechanism, contact, name(contact), all_laws.clone(), &mut notes)?;
+                laws.push((contact, stated));
             }
         }
+        notes.say();
         let found = surfaces(mechanism, state, all, &own).map_err(|error| {
             Stop::Call(format!(
                 "{error}: give --mu, --e and --law for all contacts, or --surface {}=MU,E,LAW, or state its `surface` in the model",
@@ -143,13 +146,13 @@ impl MotionSurfaces {
     }
 }
 
-/// The law of a contact: the given parts, and for the others those of the model, which are reported on
-/// standard error.
+/// The law of a contact: the given parts, and for the others those of the model, which are noted.
 fn stated_law(
     mechanism: &dyn Contacts<f64>,
     contact: usize,
     name: &str,
     given: GivenLaw,
+    notes: &mut FromModel,
 ) -> Outcome<GivenLaw> {
     let stated = ContactLaw::stated(&mechanism.stated_law(contact)).map_err(Stop::Call)?;
     let stated = GivenLaw::from(stated);
@@ -158,9 +161,7 @@ fn stated_law(
     let parts = stated.parts();
     let says: Vec<String> =
         parts.iter().filter(of_model).map(|(part, text)| format!("{part} = {text}")).collect();
-    if !says.is_empty() {
-        output::say(format_args!("note: contact {name}: {} of the model", says.join(", ")));
-    }
+    notes.add(name, &says);
     Ok(whole)
 }
 

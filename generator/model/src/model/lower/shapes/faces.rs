@@ -98,9 +98,11 @@ impl<'s> Face<'s> {
 }
 
 /// The gap of a contact: its height where it is one, elsewhere how far it is from that. Of bodies that overlap
-/// (`distance` < 0) it is the height everywhere: of some contact it is negative.
+/// (`distance` < 0) it is the height everywhere: of some contact it is negative. So it is of a contact that is valid by next
+/// to nothing, as where corners meet.
 pub(super) fn gap_of(height: Scalar, invalidity: Scalar, distance: Scalar) -> Scalar {
-    greater(height, lesser(invalidity, product([integer(STEEP), distance])))
+    let overlaps = product([integer(STEEP), lesser(invalidity.clone(), distance)]);
+    greater(height, lesser(invalidity, overlaps))
 }
 
 /// 1 for the greatest of some numbers, the first of equal ones, and 0 for the others.
