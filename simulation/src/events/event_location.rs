@@ -43,8 +43,8 @@ const SLOPES_DIFFER: f64 = 1e-3;
 /// of the polynomial through nine points exceed this part of its size.
 const SHORT: usize = 6;
 const JUMPS: f64 = 1e-2;
-/// The greatest difference of a function from its polynomial at a zero, relative to the size of the polynomial.
-const ELSEWHERE: f64 = 1e-6;
+/// The greatest difference of a function from its polynomial at a zero, in units of what the polynomial may be off by.
+const ELSEWHERE: f64 = 10.0;
 
 /// Values of a lower order exclude a zero where the polynomial through them stays within this part of its mean.
 const NEAR: f64 = 0.9;
@@ -327,7 +327,7 @@ fn within(
                 let place = low + 0.5 * (high - low) * (1.0 + x);
                 // A function with several branches may be on another one there than at all points.
                 let there = values(functions, place, &[function]).ok_or(Unresolved)?[function];
-                if (there - polynomial.at(x).0).abs() > ELSEWHERE * size + noise {
+                if (there - polynomial.at(x).0).abs() > ELSEWHERE * (error + fine) {
                     left.push(function);
                     continue;
                 }
@@ -345,6 +345,9 @@ fn within(
             break;
         }
     }
+    // Behind a crossing nothing is looked for.
+    let high = found.map_or(high, |crossing| crossing.place);
+    let middle = 0.5 * (low + high);
     if depth == 0 || high - low < 1e-12 {
         // Not smooth even here: the values at the ends decide.
         let ends = (values(functions, low, &unresolved), values(functions, high, &unresolved));
@@ -427,6 +430,24 @@ mod tests {
         let gap = |x: f64| if (0.02..0.0308).contains(&x) { 0.003 } else { 0.0301 - x };
         let place = first(gap).unwrap();
         assert!((place - 0.0308).abs() < 1e-6, "{place}");
+    }
+
+    /// Where corners meet, a contact that is none is positive by next to nothing until bodies overlap: it does not take the
+    /// place of the one that touches.
+    #[test]
+    fn next_to_nothing_is_no_zero() {
+        let other = |x: f64| if (-3e-10..6e-6).contains(&(x - 0.5)) { 3e-10 } else { 0.5 - x };
+        let mut functions = Functions {
+            count: 2,
+            noise: &[1e-16; 2],
+            near: &|_| None,
+            values: &mut |x, asked| {
+                Some(asked.iter().map(|&one| if one == 0 { other(x) } else { 0.5 - x }).collect())
+            },
+            slopes: &mut |_| smallvec![Some(-1.0); 2],
+        };
+        let found = first_crossing(&mut functions, 1.0).unwrap().unwrap();
+        assert!(found.function == 1 && (found.place - 0.5).abs() < 1e-13, "{found:?}");
     }
 
     /// What the values at the places of a step exclude has no zero in it: of functions of a turn in all, as far down as

@@ -98,11 +98,9 @@ impl<'s> Face<'s> {
 }
 
 /// The gap of a contact: its height where it is one, elsewhere how far it is from that. Of bodies that overlap
-/// (`distance` < 0) it is the height everywhere: of some contact it is negative. So it is of a contact that is valid by next
-/// to nothing, as where corners meet.
+/// (`distance` < 0) it is the height everywhere: of some contact it is negative.
 pub(super) fn gap_of(height: Scalar, invalidity: Scalar, distance: Scalar) -> Scalar {
-    let overlaps = product([integer(STEEP), lesser(invalidity.clone(), distance)]);
-    greater(height, lesser(invalidity, overlaps))
+    greater(height, lesser(invalidity, product([integer(STEEP), distance])))
 }
 
 /// 1 for the greatest of some numbers, the first of equal ones, and 0 for the others.
