@@ -150,12 +150,15 @@ impl Chebyshev {
         (first + x * b1 - b2, b1 + x * d1 - d2)
     }
 
-    /// Whether its slope at a point is the given one, up to the accuracy of interpolated slopes.
+    /// Whether its slope at a point is the given one, up to the accuracy of interpolated slopes. Far from zero more is
+    /// allowed: what oscillates as far as zero has slopes of more than its distance, and where two branches are next to
+    /// each other, rounding makes a function jump from one to the other.
     fn has_slope(&self, x: f64, slope: f64, noise: f64) -> bool {
         let terms = |(k, c): (usize, &f64)| (k * k) as f64 * c.abs();
+        let far = self.coefficients.first().map_or(0.0, |first| first.abs());
         let size: f64 = self.coefficients.iter().enumerate().map(terms).sum();
         let rounding = 1e3 * noise + 1e-12 * self.size();
-        (self.at(x).1 - slope).abs() <= SLOPES_DIFFER * size.max(slope.abs()) + rounding
+        (self.at(x).1 - slope).abs() <= SLOPES_DIFFER * size.max(slope.abs()).max(far) + rounding
     }
 
     /// The first point in [low, high] where the polynomial falls below -noise.
