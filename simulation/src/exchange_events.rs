@@ -177,7 +177,7 @@ impl Transition<'_> {
         let sizes = (self.lengths, SIZE * front.scales.length);
         let moved =
             drift::close_gaps(self.mechanism, here.time, &mut q, here.speeds, here.inputs, &touching, sizes);
-        let (left, _) = moved.map_err(|error| self.failure(Failure::State(error)))?;
+        let drift::Corrected { left, .. } = moved.map_err(|error| self.failure(Failure::State(error)))?;
         if let Some(left) = left {
             return Err(self.error(Some(left.contact), ErrorKind::Drift(left.gap)));
         }

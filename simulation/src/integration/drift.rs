@@ -62,9 +62,19 @@ pub(crate) struct Left {
 /// A gap counts as closed if the remaining correction is at most this part of the size of the coordinates.
 const CLOSED: f64 = 1e-10;
 
+/// What the correction of gaps leaves.
+#[derive(Default)]
+pub(crate) struct Corrected {
+    /// the first gap that is not closed
+    pub left: Option<Left>,
+    /// the contacts as they were evaluated
+    pub known: Option<ClosedContacts>,
+    /// contacts beyond the end of their faces or edges, whose normals are not theirs any more
+    pub ended: Vec<usize>,
+}
+
 /// Moves the coordinates so that the gaps of these contacts vanish, by the least motion in the metric of the
-/// mass matrix. Returns the first gap that it does not close, if any, and the evaluated contacts. `least` is
-/// a small length of the problem: 1e-13 of it counts as rounding.
+/// mass matrix. `least` is a small length of the problem: 1e-13 of it counts as rounding.
 pub(crate) fn close_gaps(
     mechanism: WithTorques<'_>,
     time: f64,
@@ -73,11 +83,11 @@ pub(crate) fn close_gaps(
     inputs: &[f64],
     contacts: &[usize],
     (lengths, least): (&Lengths, f64),
-) -> Result<(Option<Left>, Option<ClosedContacts>), StateError> {
+) -> Result<Corrected, StateError> {
     let n = coordinates.len();
     let size = lengths.greatest(coordinates).max(least);
     let mut before = f64::INFINITY;
-    let mut known = None;
+    let mut corrected = Corrected::default();
     // torques have no gap
     let own: Vec<usize> =
         contacts.iter().copied().filter(|&contact| mechanism.torque(contact).is_none()).collect();
@@ -87,26 +97,29 @@ pub(crate) fn close_gaps(
         let mut open = Vec::new();
         let mut gaps = Vec::new();
         mechanism.gaps(&own, &state, &mut distances)?;
+        corrected.ended.clear();
         for (&contact, Distance { gap, validity }) in own.iter().zip(&distances) {
             // beyond the end of a face the gap is not closed along the normal
-            let ended = validity.is_some_and(|validity| validity < 0.0);
-            if let Some(gap) = gap.filter(|_| !ended) {
+            if validity.is_some_and(|validity| validity < 0.0) {
+                corrected.ended.push(contact);
+            } else if let Some(gap) = gap {
                 open.push(contact);
-                gaps.push(gap);
+                gaps.push(*gap);
             }
         }
         let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
         if largest <= 1e-13 * least {
-            return Ok((None, known));
+            return Ok(corrected);
         }
         if largest > CLOSED * size && largest > 0.5 * before {
             // Newton's method converges quadratically for a gap whose rate is the normal velocity.
             let worst = gaps.iter().position(|gap| gap.abs() == largest).unwrap_or(0);
-            return Ok((Some(Left { contact: open[worst], gap: gaps[worst] }), known));
+            corrected.left = Some(Left { contact: open[worst], gap: gaps[worst] });
+            return Ok(corrected);
         }
         before = largest;
         // the change is small, so the directions of the first step can be reused
-        let support: &ClosedContacts = match &mut known {
+        let support: &ClosedContacts = match &mut corrected.known {
             Some(known) => known,
             none => none.insert(ClosedContacts::new(mechanism, &state, &open, false)?),
         };
@@ -129,7 +142,7 @@ pub(crate) fn close_gaps(
             break;
         }
     }
-    Ok((None, known))
+    Ok(corrected)
 }
 
 /// Changes the speeds with the least change of kinetic energy so that closed contacts do not separate, and

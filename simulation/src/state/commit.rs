@@ -59,7 +59,7 @@ impl Transition<'_> {
         }
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let p = self.mechanism.count(ComponentKind::Speed);
-        let closed: Vec<(usize, bool)> =
+        let mut closed: Vec<(usize, bool)> =
             modes.closed.iter().map(|closed| (closed.contact, closed.slides.is_none())).collect();
         let motion = Motion { held: &modes.held, ..self.motion(&modes.closed) };
         let inputs = motion.inputs(t, y).map_err(|failure| self.failure(failure))?;
@@ -69,7 +69,10 @@ impl Transition<'_> {
             drift::close_loops(self.mechanism.mechanism, t, &mut q, &u, &inputs)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
             let sizes = (self.lengths, SIZE * self.front.scales.length);
-            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &inputs, &contacts, sizes)?;
+            let drift::Corrected { left, known, ended } =
+                drift::close_gaps(self.mechanism, t, &mut q, &u, &inputs, &contacts, sizes)?;
+            let torques: Vec<usize> = self.mechanism.torques_of(&ended).collect();
+            closed.retain(|(contact, _)| !ended.contains(contact) && !torques.contains(contact));
             // Velocities are projected last, at the corrected positions, since a remaining normal velocity
             // would count as an approach.
             drift::hold_velocities(self.mechanism, t, &q, &mut u, &inputs, (&closed, known))?;
