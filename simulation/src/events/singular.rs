@@ -40,7 +40,13 @@ impl Transition<'_> {
     /// between the previous state and this one.
     fn undefined(&self, closed: &[Closed], t: f64, y: &[f64], before: Option<&[f64]>) -> Option<usize> {
         let motion = self.motion(&[]);
-        let own = |contact: &usize| self.mechanism.torque(*contact).is_none();
+        // A face or an edge that has ended there may have given way to another, with another normal.
+        let (q, u) = motion.split(y);
+        let there = State { time: t, coordinates: q, speeds: u, inputs: &self.front.held };
+        let own = |contact: &usize| {
+            self.mechanism.torque(*contact).is_none()
+                && self.validity(*contact, &there).is_ok_and(|validity| validity >= 0.0)
+        };
         closed.iter().map(|closed| closed.contact).filter(own).find(|&contact| {
             self.changes(&motion, contact, t, y, before).is_ok_and(|changes| changes > CHANGED)
         })
