@@ -22,6 +22,7 @@ mod exact;
 mod examples;
 mod exchange;
 mod faces;
+mod flush;
 mod force_jumps;
 mod implicit;
 mod inclines;

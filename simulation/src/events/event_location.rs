@@ -453,6 +453,26 @@ mod tests {
         assert!(found.function == 1 && (found.place - 0.5).abs() < 1e-13, "{found:?}");
     }
 
+    /// Where two sides of a body are at a tie, rounding makes a gap jump between two values that are next to each other. Far
+    /// from zero that is no reason to look closer, though the slope between the points is not the one that is known.
+    #[test]
+    fn jumps_between_two_branches_are_not_looked_at_for_ever() {
+        let jumps = |x: f64| (x * 1e7).fract() < 0.3;
+        let mut looks = 0;
+        let mut functions = Functions {
+            count: 1,
+            noise: &[1e-16],
+            near: &|_| None,
+            values: &mut |x, _| {
+                looks += 1;
+                Some(smallvec![0.0353 - 1e-9 * x + if jumps(x) { 4e-10 } else { 0.0 }])
+            },
+            slopes: &mut |_| smallvec![Some(-1e-9)],
+        };
+        assert!(first_crossing(&mut functions, 1.0).unwrap().is_none());
+        assert!(looks < 20, "{looks}");
+    }
+
     /// What the values at the places of a step exclude has no zero in it: of functions of a turn in all, as far down as
     /// they go, none that falls below a thirtieth of its mean is excluded, and most that stay above half of it are.
     #[test]
