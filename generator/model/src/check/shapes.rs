@@ -194,7 +194,9 @@ fn stranger(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagnosti
             };
             let parts = [views.vector_parts(place)?, views.vector_parts(matter)?];
             let turning = views.vector_parts(|values| values.angular_velocity(shape.frame))?;
-            let far = norm3(views.now.position(anchor.point)?.map(|c| c.re));
+            // rounding of a velocity grows with the lengths that make it, also where that at the place is zero
+            let far = |point| Ok(norm3(views.now.position(point)?.map(|c| c.re)));
+            let far = far(anchor.point)? + far(home)?;
             let size = greatest(&parts[0]) + greatest(&parts[1]) + far * greatest(&turning);
             Ok(Some(Compared { parts, size }))
         };
