@@ -58,6 +58,9 @@ impl<'a> Checker<'a> {
                 MOMENTS.iter().for_each(|moment| self.number(inertia, moment, true));
             }
         }
+        for collision in link.children().filter(|part| is(part, "collision")) {
+            ["origin", "geometry"].iter().for_each(|part| drop(self.at_most_one(collision, part)));
+        }
     }
 
     /// Checks a `<joint>`: its name and type, its origin, the links that it connects, its axis and its

@@ -49,7 +49,7 @@ pub fn read(link: Node, at: impl Fn(Node) -> String, notes: &mut Vec<String>) ->
 
 fn collision(element: Node) -> Result<Collision, String> {
     let geometry = element.children().find(|part| is(part, "geometry")).ok_or("it has no <geometry>")?;
-    let shape = geometry.children().find(Node::is_element).ok_or("its <geometry> is empty")?;
+    let shape = only_shape(geometry)?;
     let (offset, rpy) = pose(element)?;
     let length = |name: &str| numbers::<1>(Some(shape), name).and_then(|[length]| positive(name, length));
     let solid = match shape.tag_name().name() {
@@ -66,6 +66,20 @@ fn collision(element: Node) -> Result<Collision, String> {
         other => return Err(format!("<{other}> cannot be a shape of a model")),
     };
     Ok(Collision { solid, offset, rpy })
+}
+
+/// The only shape of a `<geometry>`.
+///
+/// # Errors
+///
+/// There is none, or there are several.
+pub fn only_shape<'n>(geometry: Node<'n, 'n>) -> Result<Node<'n, 'n>, String> {
+    let shapes: Vec<_> = geometry.children().filter(Node::is_element).collect();
+    match shapes[..] {
+        [shape] => Ok(shape),
+        [] => Err("its <geometry> is empty".to_owned()),
+        _ => Err("its <geometry> has several shapes: keep one".to_owned()),
+    }
 }
 
 fn positive(name: &str, length: f64) -> Result<f64, String> {

@@ -2,11 +2,33 @@
 
 use roxmltree::Node;
 
-use super::attributes::{Checker, is};
+use super::attributes::Checker;
 use super::collision;
 use super::description::{Gravity, Joint, Link, Robot};
 use super::lines::Lines;
-use super::xml::Ignored;
+use super::xml::{Ignored, Known, unread};
+
+/// What is read of a robot.
+const READ: [Known; 17] = [
+    Known::new("robot", &["name", "version"], &[], &["link", "joint"]),
+    Known::new("link", &["name"], &["inertial"], &["collision"]),
+    Known::new("joint", &["name", "type"], &["origin", "parent", "child", "axis", "dynamics", "mimic"], &[]),
+    Known::new("inertial", &[], &["origin", "mass", "inertia"], &[]),
+    Known::new("origin", &["xyz", "rpy", "quat_xyzw"], &[], &[]),
+    Known::new("mass", &["value"], &[], &[]),
+    Known::new("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], &[], &[]),
+    Known::new("parent", &["link"], &[], &[]),
+    Known::new("child", &["link"], &[], &[]),
+    Known::new("axis", &["xyz"], &[], &[]),
+    Known::new("dynamics", &["damping", "friction"], &[], &[]),
+    Known::new("mimic", &["joint", "multiplier", "offset"], &[], &[]),
+    Known::new("collision", &["name"], &["origin", "geometry"], &[]),
+    // a shape that is not imported has a note of its own
+    Known::new("geometry", &[], &[], &["box", "cylinder", "sphere", "mesh", "capsule"]),
+    Known::new("box", &["size"], &[], &[]),
+    Known::new("cylinder", &["radius", "length"], &[], &[]),
+    Known::new("sphere", &["radius"], &[], &[]),
+];
 
 /// Reads the file.
 ///
@@ -31,32 +53,19 @@ pub fn read(
     let (mut links, mut joints) = (Vec::new(), Vec::new());
     let mut geometry = Vec::new();
     let mut ignored = Ignored::default();
-    let mut ignore = |of: &str, node: Node| {
-        let article = if of.is_empty() { "" } else { " of a " };
-        let what = format!("<{}>{article}{of}", node.tag_name().name());
-        ignored.count(what, || at(node));
-    };
+    // the checker tells elements that stand twice
+    let _ = unread(root, &READ, &mut ignored, &|offset| format!("{file}:{}", lines.place(offset)));
     for node in root.children().filter(Node::is_element) {
         match node.tag_name().name() {
             "link" => {
                 checker.link(node);
-                let used = |part: &Node| is(part, "inertial") || is(part, "collision");
-                node.children()
-                    .filter(|part| part.is_element() && !used(part))
-                    .for_each(|part| ignore("link", part));
                 links.push(Link::read(node, at(node), collision::read(node, at, &mut geometry)));
             }
             "joint" => {
                 checker.joint(node);
-                let wanted = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
-                for part in node.children().filter(Node::is_element) {
-                    if !wanted.contains(&part.tag_name().name()) {
-                        ignore("joint", part);
-                    }
-                }
                 joints.push(Joint::read(node, at(node)));
             }
-            _ => ignore("", node),
+            _ => {}
         }
     }
     notes.extend(ignored.notes());

@@ -33,6 +33,8 @@ mod xml;
 mod tests;
 #[cfg(test)]
 mod tests_of_formats;
+#[cfg(test)]
+mod tests_of_xml;
 
 /// The options of an import.
 #[derive(Clone, Debug, Default)]

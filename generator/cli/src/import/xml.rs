@@ -1,8 +1,8 @@
-//! Reads XML, and counts elements that are not used.
+//! Reads XML, and counts elements and attributes that are not used.
 
 use std::collections::BTreeMap;
 
-use roxmltree::Document;
+use roxmltree::{Document, Error, Node, ParsingOptions};
 
 use super::lines::Lines;
 
@@ -10,17 +10,54 @@ use super::lines::Lines;
 /// reader compares each with each.
 const MAX_ATTRIBUTES: usize = 1000;
 
-/// Parses a file.
+/// Parses a file. It may have a document type, but no entities of its own.
 ///
 /// # Errors
 ///
 /// The mistakes of the XML.
 pub fn parse<'s>(source: &'s str, file: &str, lines: &Lines<'_>) -> Result<Document<'s>, Vec<String>> {
     few_attributes(source, file, lines)?;
-    Document::parse(source).map_err(|error| {
-        let at = error.pos();
-        vec![format!("{file}:{}:{}: this is not XML: {error}", at.row, at.col)]
-    })
+    let parsed = match Document::parse(source) {
+        Err(Error::DtdDetected) => match source.find("<!ENTITY") {
+            Some(entity) => {
+                return Err(vec![format!(
+                    "{file}:{}: entities are not read: write in the place of each what it stands for, and remove the \
+                     <!DOCTYPE ..>",
+                    lines.place(entity)
+                )]);
+            }
+            None => {
+                let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+                Document::parse_with_options(source, options)
+            }
+        },
+        parsed => parsed,
+    };
+    parsed.map_err(|error| vec![told(&error, source, file, lines)])
+}
+
+/// A mistake of the XML: its place, its cause and its cure.
+fn told(error: &Error, source: &str, file: &str, lines: &Lines<'_>) -> String {
+    let stated = format!("{}:{}", error.pos().row, error.pos().col);
+    let (at, cause) = match error {
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream if !source.trim().is_empty() => {
+            let advice = "the file ends within an element: it is cut off, or lacks an end tag";
+            (lines.place(source.trim_end().len()), advice.to_owned())
+        }
+        Error::UnknownNamespace(prefix, _) => {
+            let advice = format!(
+                "the prefix `{prefix}` has no meaning: remove what bears it, or state `xmlns:{prefix}=\"..\"` in the \
+                 root element"
+            );
+            (stated, advice)
+        }
+        _ => {
+            let text = error.to_string();
+            let place = format!(" at {stated}");
+            (stated, text.strip_suffix(&place).unwrap_or(&text).to_owned())
+        }
+    };
+    format!("{file}:{at}: this is not XML: {cause}")
 }
 
 /// Refuses elements with very many attributes before the XML reader compares each with each. The tag of an
@@ -58,4 +95,66 @@ impl Ignored {
             _ => format!("{first}: ignored {what}, {count} times"),
         })
     }
+}
+
+/// What is read of the elements of a name.
+pub struct Known {
+    /// the name
+    name: &'static str,
+    /// its attributes
+    attributes: &'static [&'static str],
+    /// the elements in it that stand there once
+    parts: &'static [&'static str],
+    /// the elements in it of which there may be any number
+    lists: &'static [&'static str],
+}
+
+impl Known {
+    /// What is read of the elements of a name.
+    pub const fn new(
+        name: &'static str,
+        attributes: &'static [&'static str],
+        parts: &'static [&'static str],
+        lists: &'static [&'static str],
+    ) -> Self {
+        Known { name, attributes, parts, lists }
+    }
+
+    fn reads(&self, part: Node) -> bool {
+        let name = part.tag_name().name();
+        self.parts.contains(&name) || self.lists.contains(&name)
+    }
+}
+
+/// Counts the attributes and the elements of an element that are not read, and those of what is read of it;
+/// `at` returns the place of an offset. Returns the elements that stand a second time where one is read.
+pub fn unread<'n>(
+    element: Node<'n, 'n>,
+    known: &[Known],
+    ignored: &mut Ignored,
+    at: &dyn Fn(usize) -> String,
+) -> Vec<Node<'n, 'n>> {
+    let name = element.tag_name().name();
+    let Some(own) = known.iter().find(|known| known.name == name) else { return Vec::new() };
+    for attribute in element.attributes() {
+        if attribute.namespace().is_some() || !own.attributes.contains(&attribute.name()) {
+            let what = format!("attribute `{}` of <{name}>", attribute.name());
+            ignored.count(what, || at(attribute.range().start));
+        }
+    }
+    let mut second = Vec::new();
+    let mut seen = Vec::new();
+    for part in element.children().filter(Node::is_element) {
+        let kind = part.tag_name().name();
+        if !own.reads(part) {
+            let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+            ignored.count(format!("<{kind}> of {article} {name}"), || at(part.range().start));
+        } else if own.parts.contains(&kind) && seen.contains(&kind) {
+            second.push(part);
+        } else {
+            seen.push(kind);
+            second.extend(unread(part, known, ignored, at));
+        }
+    }
+    second
 }
