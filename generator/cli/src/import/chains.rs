@@ -26,8 +26,7 @@ impl Chains {
 
     /// Adds a massless link at a joint, to which another link is fixed.
     pub fn massless(&mut self, at: &str, name: &str) {
-        let (at, name) = (at.to_owned(), name.to_owned());
-        self.links.push(Link { at, name, inertial: None, collisions: Vec::new() });
+        self.links.push(Link::massless(at.to_owned(), name.to_owned()));
     }
 
     /// Adds a link with this pose in the axes of the joint that carries `link.name`. Returns the name of the
@@ -41,7 +40,8 @@ impl Chains {
         }
         let wish = format!("{}_frame", link.name);
         let (name, joint) = (self.names_of_links.make_up(&wish), self.names_of_joints.make_up(&wish));
-        self.massless(&link.at, &link.name);
+        let frame = Some(name.clone());
+        self.links.push(Link { frame, ..Link::massless(link.at.clone(), link.name.clone()) });
         let ends = [link.name.clone(), name.clone()];
         self.joint(Joint::fixed(link.at.clone(), joint, ends), within);
         self.links.push(Link { name: name.clone(), ..link });

@@ -6,6 +6,7 @@ use roxmltree::Node;
 
 use super::attributes::{is, numbers, pose};
 use super::collision::Collision;
+use super::names::Shortened;
 
 /// A description.
 pub struct Robot {
@@ -23,6 +24,29 @@ pub struct Robot {
     pub links: Vec<Link>,
     /// its joints, in the order of the file
     pub joints: Vec<Joint>,
+}
+
+impl Robot {
+    /// Shortens long names of links, joints and actuators, and of the links of `contacts`.
+    pub fn shorten(&mut self, contacts: &mut [String], notes: &mut Vec<String>) {
+        let links = self.links.iter().map(|link| link.name.as_str());
+        let joints = self.joints.iter();
+        let actuators = joints.clone().flat_map(|joint| joint.actuators.iter().flatten());
+        let others = joints.map(|joint| joint.name.as_str()).chain(actuators.map(|one| one.name.as_str()));
+        let mut short = Shortened::of(links.chain(others));
+        let mut shorten = |name: &mut String| *name = short.name(name);
+        for link in &mut self.links {
+            shorten(&mut link.name);
+            link.frame.iter_mut().for_each(&mut shorten);
+        }
+        for joint in &mut self.joints {
+            [&mut joint.name, &mut joint.parent, &mut joint.child].into_iter().for_each(&mut shorten);
+            joint.mimics.iter_mut().for_each(|mimic| shorten(&mut mimic.joint));
+            joint.actuators.iter_mut().flatten().for_each(|actuator| shorten(&mut actuator.name));
+        }
+        contacts.iter_mut().for_each(&mut shorten);
+        notes.extend(short.notes());
+    }
 }
 
 /// The acceleration of gravity.
@@ -43,6 +67,8 @@ pub struct Link {
     pub inertial: Option<Inertial>,
     /// its solids
     pub collisions: Vec<Collision>,
+    /// the link at its own origin, if it has the origin of its joint instead
+    pub frame: Option<String>,
 }
 
 /// The inertia of a link.
@@ -142,6 +168,11 @@ impl Joint {
 }
 
 impl Link {
+    /// A link without inertia and solids; its reader sets the other properties.
+    pub fn massless(at: String, name: String) -> Self {
+        Link { at, name, inertial: None, collisions: Vec::new(), frame: None }
+    }
+
     /// Reads a `<link>`.
     pub fn read(node: Node, at: String, collisions: Vec<Collision>) -> Self {
         let inertial = child(node, "inertial").map(|inertial| {
@@ -151,7 +182,7 @@ impl Link {
             let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
             Inertial { mass: number(child(inertial, "mass"), "value"), centre, rpy, inertia }
         });
-        Link { at, name: text(Some(node), "name"), inertial, collisions }
+        Link { inertial, collisions, ..Link::massless(at, text(Some(node), "name")) }
     }
 }
 

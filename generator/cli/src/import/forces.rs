@@ -1,4 +1,4 @@
-//! The forces along the axes of joints: inputs, actuators, damping and springs.
+//! The forces along the axes of joints: inputs, actuators and damping; and their springs.
 
 use super::description::Actuator;
 use super::formulas::bracketed;
@@ -6,7 +6,7 @@ use super::text::{JointNames, Writer};
 use super::tree::Joint;
 
 impl Writer<'_> {
-    /// The force along the axis of a joint, if any: that of its input or actuators, minus damping and spring.
+    /// The force along the axis of a joint, if any: that of its input or actuators, minus damping.
     pub(super) fn effort(
         &mut self,
         moves: &JointNames,
@@ -26,26 +26,33 @@ impl Writer<'_> {
             let name = self.parameter(&format!("d_{base}"), &unit, joint.damping, &docs);
             terms.push(format!("-{name}*{speed}"));
         }
-        let [stiffness, rests_at] = joint.spring;
-        if stiffness != 0.0 {
-            let docs = format!("stiffness of joint `{base}`");
-            let unit = format!("{force}/{position}");
-            let name = self.parameter(&format!("s_{base}"), &unit, stiffness, &docs);
-            terms.push(match rests_at {
-                0.0 => format!("-{name}*{coordinate}"),
-                _ => {
-                    let docs = format!("where the spring of joint `{base}` is without force");
-                    let rests = self.parameter(&format!("q0_{base}"), position, rests_at, &docs);
-                    format!("-{name}*({coordinate} - {rests})")
-                }
-            });
-        }
         let sum = terms.join(" + ").replace("+ -", "- ");
         match terms.len() {
             0 => None,
             1 if !sum.starts_with('-') && !sum.contains(' ') => Some(sum),
             _ => Some(format!("({sum})")),
         }
+    }
+
+    /// The stiffness of the spring of a joint, and the coordinate at which it exerts no force unless that is
+    /// 0: two parameters. `None` if it has no spring.
+    pub(super) fn spring(
+        &mut self,
+        joint: &Joint,
+        base: &str,
+        units: [&str; 3],
+    ) -> Option<(String, Option<String>)> {
+        let ([stiffness, rests_at], [position, _, force]) = (joint.spring, units);
+        if stiffness == 0.0 {
+            return None;
+        }
+        let docs = format!("stiffness of joint `{base}`");
+        let unit = format!("{force}/{position}");
+        let name = self.parameter(&format!("s_{base}"), &unit, stiffness, &docs);
+        let docs = format!("where the spring of joint `{base}` is without force");
+        let rests =
+            (rests_at != 0.0).then(|| self.parameter(&format!("q0_{base}"), position, rests_at, &docs));
+        Some((name, rests))
     }
 
     /// The force of an actuator.

@@ -34,6 +34,8 @@ mod tests;
 #[cfg(test)]
 mod tests_of_formats;
 #[cfg(test)]
+mod tests_of_mjcf;
+#[cfg(test)]
 mod tests_of_xml;
 
 /// The options of an import.
@@ -66,7 +68,7 @@ pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, V
     let lines = lines::Lines::of(source);
     let xml = xml::parse(source, file, &lines)?;
     let root = xml.root_element();
-    let document = match root.tag_name().name() {
+    let mut document = match root.tag_name().name() {
         "robot" => document::read(root, file, &lines, &mut notes)?,
         "mujoco" => mjcf::read(root, file, &lines, &mut notes)?,
         "sdf" => sdf::read(root, file, &lines, &mut notes)?,
@@ -77,6 +79,8 @@ pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, V
             )]);
         }
     };
+    let mut options = options.clone();
+    document.shorten(&mut options.contacts, &mut notes);
     let mut tree = tree::build(&document, &mut notes)?;
     match (document.on_ground, options.floating) {
         (false, floating) => tree.choose_base(floating, &mut notes),
@@ -89,6 +93,6 @@ pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, V
         }
     }
     let groups = fixed_links::combined(&tree, &document, &mut notes)?;
-    let model = text::write(&tree, &groups, &document, options, &mut notes)?;
+    let model = text::write(&tree, &groups, &document, &options, &mut notes)?;
     Ok(Imported { model, notes })
 }

@@ -1,6 +1,6 @@
 //! Converts names of links and joints to names of the model language.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Names that a model must not declare: predefined names, and keywords of Rust.
 const RESERVED: &[&str] = &[
@@ -10,6 +10,54 @@ const RESERVED: &[&str] = &[
     "while", "async", "await", "dyn", "abstract", "become", "box", "do", "final", "gen", "macro", "override",
     "priv", "try", "typeof", "unsized", "virtual", "yield",
 ];
+
+/// The largest number of letters of a name of a link, joint or actuator; the names that are formed from it
+/// have up to 100, as many as the language allows.
+const LONGEST: usize = 60;
+
+/// Shorter names for the long ones of a description, which stay distinct.
+#[derive(Default)]
+pub struct Shortened {
+    /// the names of the file and those that are taken
+    taken: HashSet<String>,
+    short: HashMap<String, String>,
+}
+
+impl Shortened {
+    /// The names of a file.
+    pub fn of<'a>(names: impl Iterator<Item = &'a str>) -> Self {
+        Shortened { taken: names.map(str::to_owned).collect(), short: HashMap::new() }
+    }
+
+    /// The name under which the model knows what has this name: its beginning, if it is long.
+    pub fn name(&mut self, name: &str) -> String {
+        if name.chars().count() <= LONGEST {
+            return name.to_owned();
+        }
+        if let Some(short) = self.short.get(name) {
+            return short.clone();
+        }
+        let beginning: String = name.chars().take(LONGEST - 10).collect();
+        let mut all =
+            std::iter::once(beginning.clone()).chain((2..).map(|count| numbered(&beginning, count)));
+        let short = all.find(|short| self.taken.insert(short.clone())).unwrap_or(beginning);
+        self.short.insert(name.to_owned(), short.clone());
+        short
+    }
+
+    /// A sentence for each name that was shortened.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes: Vec<String> = self
+            .short
+            .iter()
+            .map(|(name, short)| {
+                format!("`{name}` is called `{short}`, because names are at most {LONGEST} letters long")
+            })
+            .collect();
+        notes.sort_unstable();
+        notes
+    }
+}
 
 /// Assigns unique names.
 #[derive(Debug)]

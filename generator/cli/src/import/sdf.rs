@@ -261,7 +261,7 @@ impl Reader<'_> {
                 Err(problem) => self.problems.push(problem),
             }
         }
-        let link = Link { at: at.clone(), name: name.clone(), inertial, collisions };
+        let link = Link { inertial, collisions, ..Link::massless(at.clone(), name.clone()) };
         let within = match joint {
             Some(joint) => joint.inverse().then(&pose),
             None => {

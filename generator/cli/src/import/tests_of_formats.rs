@@ -3,33 +3,33 @@
 
 use super::{Options, import};
 
-fn imported(source: &str, file: &str) -> (String, String) {
+pub(super) fn imported(source: &str, file: &str) -> (String, String) {
     let imported =
         import(source, file, &Options::default()).unwrap_or_else(|problems| panic!("{problems:?}"));
     (imported.model, imported.notes.join("\n"))
 }
 
-fn refused(source: &str, file: &str) -> String {
+pub(super) fn refused(source: &str, file: &str) -> String {
     import(source, file, &Options::default()).unwrap_err().join("\n")
 }
 
-fn has(model: &str, line: &str) {
+pub(super) fn has(model: &str, line: &str) {
     assert!(model.lines().any(|other| other.trim() == line), "no line `{line}` in\n{model}");
 }
 
 /// Checks the model as `hodograph check` does.
-fn accepted(model: &str) {
+pub(super) fn accepted(model: &str) {
     let source = hodograph_generator::source::Source::file("imported.mech", model);
     let checked = hodograph_generator::check::check(&source);
     let said = hodograph_generator::rendering::render(&checked.diagnostics, &source);
     assert!(checked.mechanism.is_some() && !checked.has_errors(), "{said}\n{model}");
 }
 
-fn mjcf(world: &str, more: &str) -> String {
+pub(super) fn mjcf(world: &str, more: &str) -> String {
     format!("<mujoco model=\"m\">\n<worldbody>\n{world}\n</worldbody>\n{more}\n</mujoco>")
 }
 
-const ARM: &str = "<body name=\"arm\" pos=\"0 0 1\"><joint name=\"hip\" axis=\"0 2 0\"/>\
+pub(super) const ARM: &str = "<body name=\"arm\" pos=\"0 0 1\"><joint name=\"hip\" axis=\"0 2 0\"/>\
                    <geom type=\"box\" size=\"0.5 0.5 0.5\" density=\"10\"/></body>";
 
 #[test]
@@ -154,7 +154,8 @@ fn flags_of_mjcf_switch_forces_off() {
     let of = |flags: &str| imported(&with(flags, more), "m.xml");
     let (all, notes) = of("gravity=\"enable\" contact=\"disable\"");
     accepted(&all);
-    has(&all, "torque on arm_axes: (ctrl_m + kq_m*q_hip - d_hip*u_hip - s_hip*q_hip)*arm_axes.y;");
+    has(&all, "torque on arm_axes: (ctrl_m + kq_m*q_hip - d_hip*u_hip)*arm_axes.y;");
+    has(&all, "torsion arm_axes about arm_axes.y: { angle: q_hip, stiffness: s_hip };");
     assert!(notes.contains("m.xml:5:9: ignored attribute `contact` of <flag>"), "{notes}");
     let (none, _) = of("gravity=\"disable\"");
     accepted(&none);
@@ -231,7 +232,8 @@ fn actuators_of_mjcf_share_their_defaults() {
     let (model, _) =
         of("<position kp=\"7\" dampratio=\"1\"/><adhesion ctrlrange=\"0 1\" gain=\"3\"/>", motor);
     has(&model, "torque on arm_axes: ctrl_m*arm_axes.y;");
-    let muscle = mjcf(ARM, &format!("<default><muscle/></default><actuator>{position}</actuator>"));
+    let general = "<general name=\"m\" joint=\"hip\"/>";
+    let muscle = mjcf(ARM, &format!("<default><muscle/></default><actuator>{general}</actuator>"));
     assert!(refused(&muscle, "m.xml").contains("only `dyntype` none"));
 }
 
@@ -265,20 +267,20 @@ fn made_up_names_of_mjcf_are_new() {
 }
 
 /// A link with its mass centre half a metre above its origin.
-fn link(name: &str, pose: &str, more: &str) -> String {
+pub(super) fn link(name: &str, pose: &str, more: &str) -> String {
     format!(
         "<link name=\"{name}\">{pose}<inertial><pose>0 0 0.5 0 0 0</pose><mass>2</mass><inertia><ixx>0.1</ixx>\
          <iyy>0.1</iyy><izz>0.02</izz></inertia></inertial>{more}</link>\n"
     )
 }
 
-fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
+pub(super) fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
     format!(
         "<joint name=\"{name}\" type=\"{kind}\"><parent>{parent}</parent><child>{child}</child>{more}</joint>\n"
     )
 }
 
-fn sdf(body: &str) -> String {
+pub(super) fn sdf(body: &str) -> String {
     format!("<sdf version=\"1.11\"><model name=\"m\">\n{body}</model></sdf>")
 }
 

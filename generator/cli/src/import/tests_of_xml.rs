@@ -1,5 +1,6 @@
-//! Tests of the import: attributes of URDF that are not read, and mistakes of the XML.
+//! Tests of the import: attributes of URDF that are not read, mistakes of the XML, and long names.
 
+use super::tests_of_formats::{accepted, has};
 use super::{Imported, Options, import};
 
 const LINKS: &str = "<link name=\"base\"/>\n<link name=\"arm\"><inertial><origin xyz=\"0 0 1\"/><mass value=\"2\"/>\
@@ -97,4 +98,22 @@ fn mistakes_of_the_xml_have_their_places() {
     }
     let crossed = refused("<robot>\n<link></robot>");
     assert_eq!(crossed, "r.urdf:2:7: this is not XML: expected 'link' tag, not 'robot'");
+}
+
+/// Long names are shortened to distinct ones, so that the names formed from them are allowed.
+#[test]
+fn long_names_are_shortened() {
+    let long = "a".repeat(120);
+    let hung = robot("<axis xyz=\"0 0 1\"/>").replace("revolute", "prismatic");
+    let source = hung.replace("\"arm\"", &format!("\"{long}1\"")).replace("\"hip\"", &format!("\"{long}2\""));
+    let contacts = vec![format!("{long}1")];
+    let imported = import(&source, "r.urdf", &Options { contacts, ..Options::default() }).unwrap();
+    accepted(&imported.model);
+    let short = "a".repeat(50);
+    has(&imported.model, &format!("q_{short}_n2: m,"));
+    let notes = imported.notes.join("\n");
+    for (end, name) in [("1", short.clone()), ("2", format!("{short}_n2"))] {
+        let told = format!("`{long}{end}` is called `{name}`, because names are at most 60 letters long");
+        assert!(notes.contains(&told), "{notes}");
+    }
 }

@@ -35,9 +35,9 @@ impl Reader<'_> {
     }
 }
 
-/// The joint that an actuator drives, and its law: that of `steps`, the defaults of its class and its own
-/// attributes, one after another.
-fn actuator(element: &Element, steps: &[Element]) -> Result<(String, Actuator), String> {
+/// The joint that an actuator drives, and its law: that of `classes`, the defaults of its classes from the
+/// outermost on and its own attributes.
+fn actuator(element: &Element, classes: &[Vec<Element>]) -> Result<(String, Actuator), String> {
     let joint = element.text("joint").ok_or_else(|| {
         element.wrong("only actuators of a `joint` are imported: state the force of others in the model")
     })?;
@@ -49,40 +49,75 @@ fn actuator(element: &Element, steps: &[Element]) -> Result<(String, Actuator), 
             element.kind
         )));
     }
-    let mut law = Law::default();
-    for step in steps {
-        law.change(step)?;
-        element.read_like(step);
+    let mut laws = Laws::default();
+    for class in classes {
+        laws.inner();
+        for step in class {
+            laws.change(step)?;
+            element.read_like(step);
+        }
     }
+    let law = laws.last();
     if law.kinds != ["none", "fixed", "none"] && law.kinds != ["none", "fixed", "affine"] {
         return Err(
-            element.wrong("only `dyntype` none, `gaintype` fixed and `biastype` none or affine are imported")
+            element.wrong(
+                "only `dyntype` none (a `position` without `timeconst`), `gaintype` fixed and `biastype` none or affine are \
+                 imported: state its force in the model",
+            )
         );
     }
     let affine = law.kinds[2] == "affine";
-    if affine && law.damping_by_ratio {
+    if affine && law.bias[2] > 0.0 && law.gain == -law.bias[1] {
         return Err(element.wrong("`dampratio` is not imported: state `kv`"));
     }
     let bias = if affine { law.bias } else { [0.0; 3] };
     Ok((joint.to_owned(), Actuator { name, gain: law.gain, bias, gear }))
 }
 
+/// The laws of the default actuators of classes, the outermost first, each with the kind of the element that
+/// changed it last.
+#[derive(Default)]
+struct Laws(Vec<(String, Law)>);
+
+impl Laws {
+    /// Begins a class in the one before, whose law it inherits.
+    fn inner(&mut self) {
+        self.0.extend(self.0.last().cloned());
+    }
+
+    /// Makes the changes of an actuator or a default of actuators to the law of the class. An element of a
+    /// kind changes the innermost law of this kind or of a `<general>`; a `<general>` that of any kind.
+    fn change(&mut self, element: &Element) -> Result<(), String> {
+        let kind = element.kind.as_str();
+        let fits = |(other, _): &&(String, Law)| kind == "general" || other == kind || other == "general";
+        let mut law = self.0.iter().rev().find(fits).map_or_else(Law::default, |(_, law)| law.clone());
+        law.change(element)?;
+        self.0.pop();
+        self.0.push((kind.to_owned(), law));
+        Ok(())
+    }
+
+    /// The law of the innermost class.
+    fn last(self) -> Law {
+        self.0.into_iter().next_back().map_or_else(Law::default, |(_, law)| law)
+    }
+}
+
 /// The law of an actuator in the attributes of `<general>`, which all kinds of actuators set.
+#[derive(Clone)]
 struct Law {
     /// the first of `gainprm`
     gain: f64,
-    /// the first three of `biasprm`
+    /// the first three of `biasprm`; a positive last one is the `dampratio` of a servo
     bias: [f64; 3],
     /// `dyntype`, `gaintype`, `biastype`
     kinds: [String; 3],
-    /// whether the last of `bias` is a `dampratio`
-    damping_by_ratio: bool,
 }
 
 impl Default for Law {
     fn default() -> Self {
         let kinds = ["none", "fixed", "none"].map(str::to_owned);
-        Law { gain: 1.0, bias: [0.0; 3], kinds, damping_by_ratio: false }
+        Law { gain: 1.0, bias: [0.0; 3], kinds }
     }
 }
 
@@ -91,25 +126,31 @@ impl Law {
     fn change(&mut self, element: &Element) -> Result<(), String> {
         match element.kind.as_str() {
             "motor" => {
-                self.gain = 1.0;
-                self.be("none", "fixed", "none");
+                *self = Law::default();
             }
             kind @ ("position" | "intvelocity") => {
                 self.gain = element.amount("kp", self.gain)?;
-                self.bias[1] = -self.gain;
-                if element.text("kv").is_some() {
-                    self.bias[2] = -element.amount("kv", 0.0)?;
-                    self.damping_by_ratio = false;
+                self.bias = [0.0, -self.gain, self.bias[2]];
+                match ["kv", "dampratio"].map(|name| element.text(name).is_some()) {
+                    [true, true] => return Err(element.wrong("state one of `kv` and `dampratio`")),
+                    [true, false] => self.bias[2] = -element.amount("kv", 0.0)?,
+                    [false, true] => self.bias[2] = element.amount("dampratio", 0.0)?,
+                    [false, false] => {}
                 }
-                self.damping_by_ratio |= element.text("dampratio").is_some();
-                let dynamics =
-                    if kind == "position" { self.kinds[0].clone() } else { "integrator".to_owned() };
-                self.be(&dynamics, "fixed", "affine");
+                let filtered = match element.numbers::<1>("timeconst")? {
+                    Some([time]) => time > 0.0,
+                    None => self.kinds[0] == "filterexact",
+                };
+                let dynamics = match kind {
+                    "position" if filtered => "filterexact",
+                    "position" => "none",
+                    _ => "integrator",
+                };
+                self.be(dynamics, "fixed", "affine");
             }
             "velocity" => {
                 self.gain = element.amount("kv", self.gain)?;
                 self.bias = [0.0, 0.0, -self.gain];
-                self.damping_by_ratio = false;
                 self.be("none", "fixed", "affine");
             }
             "general" => {
@@ -122,7 +163,6 @@ impl Law {
                     self.gain = gain;
                 }
                 let bias = element.list("biasprm")?.unwrap_or_default();
-                self.damping_by_ratio &= bias.len() < 3;
                 self.bias.iter_mut().zip(bias).for_each(|(own, stated)| *own = stated);
             }
             "adhesion" => {

@@ -15,14 +15,17 @@ type Values = BTreeMap<String, String>;
 #[derive(Default)]
 pub struct Defaults(BTreeMap<String, Class>);
 
+/// Largest depth of nested defaults.
+const MAX_DEPTH: usize = 200;
+
 /// The default values of a class.
 #[derive(Clone, Default)]
 struct Class {
     /// by the names of elements
     values: BTreeMap<String, Values>,
-    /// the defaults of actuators in their order, each with its name: all of them set what the one kind `general`
-    /// has
-    actuators: Vec<(String, Values)>,
+    /// the defaults of actuators, each with its name: those of the outermost class first, those of this class
+    /// last
+    actuators: Vec<Vec<(String, Values)>>,
 }
 
 /// The kinds of actuators.
@@ -48,14 +51,41 @@ const OF_ALL_ACTUATORS: [&str; 14] = [
 ];
 
 impl Defaults {
-    /// Reads a `<default>` and those inside it, which inherit its values.
-    pub fn read(&mut self, node: Node, outer: Option<&str>) {
+    /// Reads a `<default>` and those inside it, which inherit its values; `at` returns the place of an
+    /// element.
+    ///
+    /// # Errors
+    ///
+    /// Defaults are nested too deep.
+    pub fn read(&mut self, node: Node, at: &dyn Fn(Node) -> String) -> Result<(), String> {
+        self.read_in(node, None, 1, at)
+    }
+
+    fn read_in(
+        &mut self,
+        node: Node,
+        outer: Option<&str>,
+        depth: usize,
+        at: &dyn Fn(Node) -> String,
+    ) -> Result<(), String> {
+        if depth > MAX_DEPTH {
+            return Err(format!(
+                "{}: defaults are nested more than {MAX_DEPTH} deep: name them side by side",
+                at(node)
+            ));
+        }
         let class = node.attribute("class").unwrap_or("main").to_owned();
         let mut all = self.0.get(outer.unwrap_or(&class)).cloned().unwrap_or_default();
+        if outer.is_some() || all.actuators.is_empty() {
+            all.actuators.push(Vec::new());
+        }
         for element in node.children().filter(Node::is_element) {
             let name = element.tag_name().name();
             if ACTUATORS.contains(&name) {
-                all.actuators.push((name.to_owned(), stated(element)));
+                all.actuators
+                    .last_mut()
+                    .expect("a level of this class")
+                    .push((name.to_owned(), stated(element)));
                 let (shared, own): (Values, Values) = stated(element)
                     .into_iter()
                     .partition(|(name, _)| OF_ALL_ACTUATORS.contains(&name.as_str()));
@@ -67,8 +97,9 @@ impl Defaults {
         }
         self.0.insert(class.clone(), all);
         for inner in node.children().filter(|part| part.tag_name().name() == "default") {
-            self.read(inner, Some(&class));
+            self.read_in(inner, Some(&class), depth + 1, at)?;
         }
+        Ok(())
     }
 
     /// An element of a class; its own attribute `class` takes precedence.
@@ -84,22 +115,45 @@ impl Defaults {
             return Err(format!("{at}: there is no <default class=\"{class}\">"));
         }
         let mut values = given.and_then(|given| given.values.get(name)).cloned().unwrap_or_default();
-        values.extend(stated(node));
+        set(&mut values, stated(node));
         Ok(Element::of(at, name, values))
     }
 
-    /// The defaults of actuators of a class in their order, and last the actuator with its own attributes alone.
-    pub fn of_actuator(&self, node: Node, at: &str) -> Vec<Element> {
+    /// The defaults of actuators of the classes from the outermost to that of the actuator, and last the
+    /// actuator with its own attributes alone.
+    pub fn of_actuator(&self, node: Node, at: &str) -> Vec<Vec<Element>> {
         let class = self.0.get(node.attribute("class").unwrap_or("main"));
         let defaults = class.iter().flat_map(|class| class.actuators.iter().cloned());
-        let own = (node.tag_name().name().to_owned(), stated(node));
-        defaults.chain([own]).map(|(kind, values)| Element::of(at.to_owned(), &kind, values)).collect()
+        let own = vec![(node.tag_name().name().to_owned(), stated(node))];
+        let elements = |level: Vec<(String, Values)>| {
+            level.into_iter().map(|(kind, values)| Element::of(at.to_owned(), &kind, values)).collect()
+        };
+        defaults.chain([own]).map(elements).collect()
     }
 }
 
 impl Class {
     fn add(&mut self, kind: &str, values: Values) {
-        self.values.entry(kind.to_owned()).or_default().extend(values);
+        set(self.values.entry(kind.to_owned()).or_default(), values);
+    }
+}
+
+/// The attributes that state an orientation, of which an element has one.
+const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
+/// Sets attributes over those of a class: an orientation takes the place of one in any form, and a `size`
+/// with fewer numbers leaves the others as they are.
+fn set(values: &mut Values, own: Values) {
+    if ORIENTATIONS.iter().any(|name| own.contains_key(*name)) {
+        ORIENTATIONS.iter().for_each(|name| drop(values.remove(*name)));
+    }
+    let size = values.get("size").cloned().unwrap_or_default();
+    values.extend(own);
+    if let Some(own) = values.get_mut("size") {
+        let rest: Vec<&str> = size.split_whitespace().skip(own.split_whitespace().count()).collect();
+        if !rest.is_empty() {
+            *own = format!("{own} {}", rest.join(" "));
+        }
     }
 }
 
@@ -217,6 +271,11 @@ impl Angles {
         if self.degrees { angle.to_radians() } else { angle }
     }
 
+    /// Whether an element states an orientation.
+    pub fn turns(&self, element: &Element) -> bool {
+        ORIENTATIONS.iter().any(|name| element.text(name).is_some())
+    }
+
     /// The pose of an element in its body.
     ///
     /// # Errors
@@ -228,10 +287,10 @@ impl Angles {
     }
 
     fn turn(&self, element: &Element) -> Result<Matrix3<f64>, String> {
-        let given =
-            ["quat", "axisangle", "euler", "xyaxes", "zaxis"].map(|name| element.text(name).is_some());
-        if given.iter().filter(|given| **given).count() > 1 {
-            return Err(element.wrong("its orientation is stated twice"));
+        if ORIENTATIONS.map(|name| element.text(name).is_some()).into_iter().filter(|given| *given).count()
+            > 1
+        {
+            return Err(element.wrong("its orientation is stated twice: keep one"));
         }
         let zero = || element.wrong("its orientation has a direction of length 0");
         if let Some(quaternion) = element.numbers::<4>("quat")? {

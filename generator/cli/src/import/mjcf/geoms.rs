@@ -38,8 +38,11 @@ impl Reader<'_> {
         let for_the_eye = strikes == [true, true] && given == [true, true];
         let mut length = 0.0;
         if let Some([a, b, c, d, e, f]) = ends {
-            if !matches!(kind, "capsule" | "cylinder") {
-                return Err(element.wrong("`fromto` is imported of capsules and cylinders only"));
+            if !matches!(kind, "capsule" | "cylinder" | "box" | "ellipsoid") {
+                return Err(element.wrong("`fromto` is for capsules, cylinders, boxes and ellipsoids"));
+            }
+            if element.text("pos").is_some() {
+                return Err(element.wrong("it has both `pos` and `fromto`: keep one"));
             }
             let (from, to) = (Vector3::new(a, b, c), Vector3::new(d, e, f));
             length = (from - to).norm();
@@ -57,7 +60,13 @@ impl Reader<'_> {
                 None => given(count).map(|size| [size[0], 2.0 * size[1]]),
             }
         };
-        let three = |factor: f64| given(3).map(|size| [0, 1, 2].map(|i| factor * size[i]));
+        let three = |factor: f64| -> Result<[f64; 3], String> {
+            match ends {
+                // square or round across the line between the ends
+                Some(_) => given(1).map(|size| [factor * size[0], factor * size[0], 0.5 * factor * length]),
+                None => given(3).map(|size| [0, 1, 2].map(|i| factor * size[i])),
+            }
+        };
         let solid = match kind {
             "plane" => Solid::Plane,
             "sphere" => Solid::Sphere(given(1)?[0]),

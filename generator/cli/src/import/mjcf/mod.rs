@@ -68,12 +68,14 @@ pub fn read(
         problems: Vec::new(),
     };
     let sections = |name: &'static str| root.children().filter(move |node| node.tag_name().name() == name);
-    sections("default").for_each(|node| reader.defaults.read(node, None));
+    for node in sections("default") {
+        reader.defaults.read(node, &|node| place(file, lines, node)).map_err(|problem| vec![problem])?;
+    }
     sections("compiler").for_each(|node| reader.attempt(node, Reader::compiler));
     sections("option").for_each(|node| reader.options(node));
     reader.names(root);
     let world = reader.at(root);
-    let mut link = Link { at: world, name: "world".to_owned(), inertial: None, collisions: Vec::new() };
+    let mut link = Link::massless(world, "world".to_owned());
     for node in sections("worldbody") {
         reader.world(node, &mut link);
     }
@@ -120,6 +122,11 @@ struct Reader<'a> {
     problems: Vec<String>,
 }
 
+/// The place of an element in its file.
+fn place(file: &str, lines: &Lines<'_>, node: Node) -> String {
+    format!("{file}:{}", lines.place(node.range().start))
+}
+
 /// A body with the parts that are read so far.
 struct Body {
     name: String,
@@ -134,7 +141,7 @@ struct Body {
 
 impl Reader<'_> {
     fn at(&self, node: Node) -> String {
-        format!("{}:{}", self.file, self.lines.place(node.range().start))
+        place(self.file, self.lines, node)
     }
 
     /// Reads an element; reports its mistakes, and counts attributes that were not read.
@@ -293,8 +300,13 @@ impl Reader<'_> {
                 Ok(())
             }),
             "inertial" => self.attempt_in(node, &class, |reader, element| {
-                body.inertial = Some(reader.inertial(element)?);
-                Ok(())
+                let inertial = reader.inertial(element)?;
+                match body.inertial.replace(inertial) {
+                    None => Ok(()),
+                    Some(_) => {
+                        Err(element.wrong(&format!("a second <inertial> of body `{}`: keep one", body.name)))
+                    }
+                }
             }),
             "joint" | "freejoint" => match self.defaults.element(node, &class, self.at(node)) {
                 Ok(element) => body.joints.push(element),
@@ -353,7 +365,7 @@ impl Reader<'_> {
         }
         let inertial = if stated { body.inertial.clone() } else { masses::combined(&parts) };
         let collisions = body.geoms.iter().filter_map(|geom| geom.collision).collect();
-        let link = Link { at: at.to_owned(), name: body.name.clone(), inertial, collisions };
+        let link = Link { inertial, collisions, ..Link::massless(at.to_owned(), body.name.clone()) };
         let mut parent = body.parent.clone();
         // the axes of the body at the next joint, relative to those of the previous joint or of the parent
         let mut pose = body.pose;
@@ -455,6 +467,12 @@ impl Reader<'_> {
         let diagonal =
             element.numbers::<3>("diaginertia")?.map(|d| Matrix3::from_diagonal(&Vector3::from(d)));
         let full = element.numbers::<6>("fullinertia")?;
+        if full.is_some() && self.angles.turns(element) {
+            return Err(element.wrong(
+                "`fullinertia` is along the axes of the body, but an orientation is stated: remove that, or state \
+                 `diaginertia`",
+            ));
+        }
         let full = full.map(|[xx, yy, zz, xy, xz, yz]| Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
         let inertia = match (diagonal, full) {
             (Some(inertia), None) | (None, Some(inertia)) => inertia,

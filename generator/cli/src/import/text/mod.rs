@@ -1,9 +1,10 @@
 //! Writes the text of the model, section by section.
 
+mod solids;
+
 use nalgebra::Vector3;
 
 use super::Options;
-use super::collision::{Collision, Solid};
 use super::description::{Gravity, Robot};
 use super::fixed_links::{Groups, perpendicular};
 use super::formulas::{axis_word, combination, decimal, rotation, times, weighted};
@@ -95,7 +96,7 @@ pub fn write(
     }
     let mut problems = Vec::new();
     for contact in &options.contacts {
-        writer.contact(contact, &mut problems);
+        writer.contact(contact, document, &mut problems);
     }
     if !problems.is_empty() {
         return Err(problems);
@@ -273,6 +274,16 @@ impl Writer<'_> {
                     let torque = times(&torque, &combination(&joint.axis, &called.axes));
                     self.apply_torque(&called, reaction, &torque);
                 }
+                if let Some((stiffness, rests)) = self.spring(joint, base, TURN) {
+                    let from = reaction.map_or(String::new(), |axes| format!(" from {axes}"));
+                    let rest = rests.map_or(String::new(), |rest| format!("rest: {rest}, "));
+                    self.out.loads.push(format!(
+                        "torsion {}{from} about {}: {{ angle: {}, {rest}stiffness: {stiffness} }};",
+                        called.axes,
+                        combination(&joint.axis, &called.axes),
+                        moves.coordinates[0]
+                    ));
+                }
                 called
             }
             Motion::Slide => {
@@ -282,6 +293,14 @@ impl Writer<'_> {
                 let reaction = if on_ground { String::new() } else { format!(" from {origin}") };
                 if let Some(force) = force {
                     self.out.loads.push(format!("force on {point}{reaction}: {};", times(&force, &axis)));
+                }
+                // a spring without length, to the point of the axis at which it exerts no force
+                if let Some((stiffness, rests)) = self.spring(joint, base, SLIDE) {
+                    let end = match rests {
+                        None => origin.clone(),
+                        Some(rests) => self.point(&format!("{base}_rest"), &origin, &times(&rests, &axis)),
+                    };
+                    self.out.loads.push(format!("spring {point} to {end}: {{ stiffness: {stiffness} }};"));
                 }
                 LinkFrame { axes, origin: point }
             }
@@ -432,82 +451,6 @@ impl Writer<'_> {
         self.out.bodies.push(format!(
             "{above}\n    {name} {{ frame: {axes}, centre: {centre}, mass: {mass}, inertia: [{}] }},",
             entries.join(", ")
-        ));
-    }
-
-    /// Writes the shape of a solid of a link.
-    fn shape(&mut self, here: usize, collision: &Collision) {
-        let link = &self.tree.links[here];
-        let group = self.groups.of_link[here];
-        let LinkFrame { axes, origin } = self.called[here].clone();
-        let name = self.names.give(&format!("{}_shape", link.name));
-        let at = match self.offset(["sx", "sy", "sz"], &name, &collision.offset, &axes) {
-            None => origin,
-            Some(offset) => format!("{origin} + {offset}"),
-        };
-        let own = match (collision.solid, rotation(&collision.rpy)) {
-            (Solid::Sphere(_), _) | (_, None) => axes.clone(),
-            (_, Some(turn)) => self.frame(&format!("{name}_axes"), &axes, &turn),
-        };
-        let mut length =
-            |letter: &str, value: f64| self.parameter(&format!("{letter}_{name}"), "m", value, "");
-        let solid = match collision.solid {
-            Solid::Sphere(r) => format!("sphere: {}", length("r", r)),
-            Solid::Cylinder([r, l]) => {
-                format!("cylinder: [{}, {}], axis: {own}.z", length("r", r), length("l", l))
-            }
-            Solid::Capsule([r, l]) => {
-                format!("capsule: [{}, {}], axis: {own}.z", length("r", r), length("l", l))
-            }
-            Solid::Ellipsoid([a, b, c]) => {
-                format!(
-                    "ellipsoid: [{}, {}, {}], axes: {own}",
-                    length("a", a),
-                    length("b", b),
-                    length("c", c)
-                )
-            }
-            Solid::Plane => format!("plane: {own}.z"),
-            Solid::Box([a, b, c]) => {
-                format!("box: [{}, {}, {}], axes: {own}", length("a", a), length("b", b), length("c", c))
-            }
-        };
-        let group = &self.groups.groups[group];
-        let rigid = group.properties.as_ref().is_some_and(|properties| {
-            let i = &properties.inertia;
-            i.iter().any(|&number| number != 0.0)
-        });
-        let of = match &self.bodies[self.groups.of_link[here]] {
-            _ if group.ground => String::new(),
-            Some(body) if rigid => format!("of: {body}, "),
-            _ => format!("of: {axes}, "),
-        };
-        self.out.shapes.push(format!("{name} {{ {of}at: {at}, {solid} }},"));
-    }
-
-    fn contact(&mut self, wanted: &str, problems: &mut Vec<String>) {
-        let links = &self.tree.links;
-        let Some(here) = links.iter().position(|link| link.name == wanted) else {
-            let hint = crate::spelling::hint(wanted, links.iter().map(|link| link.name.as_str()));
-            problems.push(format!("--contact {wanted}: there is no such link: {hint}"));
-            return;
-        };
-        let group = self.groups.of_link[here];
-        if self.groups.groups[group].ground {
-            problems
-                .push(format!("--contact {wanted}: this link is fixed to the ground and strikes nothing"));
-            return;
-        }
-        let origin = self.called[here].origin.clone();
-        let of = match (&self.bodies[group], &self.groups.groups[group].properties) {
-            (Some(body), Some(properties)) if properties.inertia.amax() > 0.0 => format!(" of {body}"),
-            _ => String::new(),
-        };
-        let name = self.names.give(&format!("contact_{wanted}"));
-        let above = comment(&format!("the origin of link `{wanted}` strikes the plane through O across N.z"));
-        self.out.contacts.push(format!(
-            "{above}\n    {name} {{ point: {origin}{of}, \
-             normal: N.z, gap: dot(position({origin}), N.z) }},"
         ));
     }
 
