@@ -36,6 +36,8 @@ mod tests_of_formats;
 #[cfg(test)]
 mod tests_of_mjcf;
 #[cfg(test)]
+mod tests_of_sdf;
+#[cfg(test)]
 mod tests_of_xml;
 
 /// The options of an import.
