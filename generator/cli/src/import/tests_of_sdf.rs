@@ -233,6 +233,14 @@ fn joints_without_ends_are_told() {
     assert_eq!(of("<parent>world</parent>"), "m.sdf:3:1: joint `j`: it has no <child>: name its child link");
     let told = of("<parent>wurld</parent><child>a</child>");
     assert!(told.contains("`wurld`") && told.lines().count() == 1, "{told}");
+    let told = of("<parent>a</parent><child>world</child>");
+    assert!(told.contains("the world cannot be carried: exchange") && told.lines().count() == 1, "{told}");
+    let lost = "<frame name=\"f\" attached_to=\"zz\"/>\n".to_owned() + &joint("j", "revolute", "f", "a", "");
+    let told = refused(&sdf(&(link("a", "", "") + &lost)), "m.sdf");
+    assert_eq!(told, "m.sdf:3:1: there is no frame, link or joint `zz`: there are: a, f, j");
+    // two elements of one name are one mistake
+    let twins = link("a", "", "") + &joint("a", "revolute", "world", "a", "");
+    assert_eq!(refused(&sdf(&twins), "m.sdf"), "m.sdf:3:1: a second `a`: rename one");
 }
 
 /// The contact of a link is at its own origin, not at that of its joint.

@@ -18,7 +18,7 @@ const MAX_ATTRIBUTES: usize = 1000;
 pub fn parse<'s>(source: &'s str, file: &str, lines: &Lines<'_>) -> Result<Document<'s>, Vec<String>> {
     few_attributes(source, file, lines)?;
     let parsed = match Document::parse(source) {
-        Err(Error::DtdDetected) => match source.find("<!ENTITY") {
+        Err(Error::DtdDetected) => match entity(source) {
             Some(entity) => {
                 return Err(vec![format!(
                     "{file}:{}: entities are not read: write in the place of each what it stands for, and remove the \
@@ -34,6 +34,12 @@ pub fn parse<'s>(source: &'s str, file: &str, lines: &Lines<'_>) -> Result<Docum
         parsed => parsed,
     };
     parsed.map_err(|error| vec![told(&error, source, file, lines)])
+}
+
+/// Where the document type declares an entity.
+fn entity(source: &str) -> Option<usize> {
+    let begin = source.find("<!DOCTYPE")?;
+    source[begin..].find("<!ENTITY").map(|entity| begin + entity)
 }
 
 /// A mistake of the XML: its place, its cause and its cure.

@@ -1,11 +1,12 @@
 //! The poses of links, joints and frames, each relative to axes of its choice.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::{Reader, child, text};
+use super::{Reader, WORLD, child, text};
 use crate::import::fixed_links::rotation_of;
 use crate::import::poses::{Pose, of_quaternion};
 
@@ -34,8 +35,8 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// The mistakes in what the poses are relative to, each once; such a pose is taken relative to the model
-    /// from then on.
+    /// The mistakes in what the poses are relative to and what frames move with, each once; such a pose is taken
+    /// relative to the model from then on.
     pub(super) fn settle(&mut self) -> Vec<String> {
         let mut problems = Vec::new();
         let mut settled: HashMap<&str, usize> = HashMap::new();
@@ -70,7 +71,19 @@ impl Frames {
                 MODEL.clone_into(&mut frame.within);
             }
         }
+        for problem in self.order.iter().filter_map(|name| self.lost(name)) {
+            if !problems.contains(&problem) {
+                problems.push(problem);
+            }
+        }
         problems
+    }
+
+    /// The mistake of a frame or joint that moves with something that does not exist.
+    fn lost(&self, name: &str) -> Option<String> {
+        let frame = &self.known[name];
+        let unknown = |to: &&String| *to != MODEL && !self.known.contains_key(*to);
+        frame.attached.as_ref().filter(unknown).map(|to| self.unknown(to, &frame.at))
     }
 
     fn unknown(&self, name: &str, at: &str) -> String {
@@ -91,15 +104,17 @@ impl Frames {
 
     /// The link that a link, joint or frame moves with; an unknown name, and the world, stay.
     pub(super) fn link_of(&self, name: &str) -> String {
-        let mut name = if name == MODEL { self.canonical.as_str() } else { name };
+        let attached = |name: &str| self.known.get(name).and_then(|frame| frame.attached.as_deref());
+        let of_model = |name| if name == MODEL { self.canonical.as_str() } else { name };
+        let mut here = of_model(name);
         for _ in 0..=self.order.len() {
-            match self.known.get(name).and_then(|frame| frame.attached.as_deref()) {
-                Some(MODEL) => name = &self.canonical,
-                Some(next) => name = next,
-                None => break,
+            match attached(here) {
+                // an unknown name is told where it stands
+                Some(next) if next == MODEL || self.known.contains_key(next) => here = of_model(next),
+                _ => break,
             }
         }
-        name.to_owned()
+        here.to_owned()
     }
 }
 
@@ -156,22 +171,25 @@ impl Reader<'_> {
             return self.problems.push(problem);
         };
         let attached = match node.tag_name().name() {
-            "joint" => child(node, "child").map(text),
+            // what is wrong with the ends of a joint is told with them
+            "joint" => {
+                child(node, "child").map(text).map(|name| if name == WORLD { String::new() } else { name })
+            }
             "frame" => Some(node.attribute("attached_to").unwrap_or_default().to_owned()),
             _ => None,
         };
-        // a joint without a child is told with the joints
         let attached = attached.map(|name| if name.is_empty() { MODEL.to_owned() } else { name });
         let (pose, within) = self.pose(node).unwrap_or_else(|problem| {
             self.problems.push(problem);
             (Pose::identity(), None)
         });
         let within = within.or_else(|| attached.clone()).unwrap_or_else(|| MODEL.to_owned());
-        let second = format!("{at}: a second `{name}`: rename one");
-        if self.frames.known.insert(name.to_owned(), Frame { at, within, pose, attached }).is_some() {
-            self.problems.push(second);
-        } else {
-            self.frames.order.push(name.to_owned());
+        match self.frames.known.entry(name.to_owned()) {
+            Entry::Occupied(_) => self.problems.push(format!("{at}: a second `{name}`: rename one")),
+            Entry::Vacant(free) => {
+                free.insert(Frame { at, within, pose, attached });
+                self.frames.order.push(name.to_owned());
+            }
         }
     }
 }

@@ -214,7 +214,8 @@ impl Reader<'_> {
         chains.massless(&self.at(model), WORLD);
         let mut axes_of: HashMap<String, String> = HashMap::from([(WORLD.to_owned(), WORLD.to_owned())]);
         for link in named("link") {
-            let name = link.attribute("name").unwrap_or_default().to_owned();
+            let Some(name) = link.attribute("name").filter(|name| !name.is_empty()) else { continue };
+            let name = name.to_owned();
             let carried = named("joint").zip(&ends).find(|(_, ends)| ends[1] == name).map(|(joint, _)| joint);
             let axes = self.link(link, carried, place, &mut chains);
             axes_of.extend(axes.map(|axes| (name, axes)));
@@ -246,6 +247,11 @@ impl Reader<'_> {
             let link = node.attribute("link").unwrap_or("..");
             let advice = format!("it names no link: write its name as text, <{end}>{link}</{end}>");
             self.problems.push(self.wrong(node, &advice));
+        }
+        if (end, name.as_str()) == ("child", WORLD) {
+            self.problems
+                .push(self.wrong(node, "the world cannot be carried: exchange <parent> and <child>"));
+            return String::new();
         }
         self.frames.link_of(&name)
     }
