@@ -125,12 +125,23 @@ fn springs_of_mjcf_store_energy() {
     let chain = body("a", slide, &body("b", hinge, &body("c", &at_rest, "")));
     let (model, notes) = imported(&mjcf(&chain, ""), "m.xml");
     accepted(&model);
-    has(&model, "spring a_origin to O: { stiffness: s_ja };");
+    has(&model, "ja_anchor = O - l_ja*N.x;");
+    has(&model, "l_ja: m = 100,");
+    has(&model, "spring a_origin to ja_anchor: { stiffness: s_ja, length: l_ja };");
     has(&model, "torsion b_axes from N about -b_axes.y: { angle: q_jb, rest: q0_jb, stiffness: s_jb };");
-    has(&model, "jc_rest = a_origin + q0_jc*b_axes.x;");
-    has(&model, "spring c_origin to jc_rest: { stiffness: s_jc };");
+    has(&model, "jc_anchor = a_origin - l_jc*b_axes.x;");
+    has(&model, "spring c_origin to jc_anchor: { stiffness: s_jc, length: l_jc + q0_jc };");
     has(&model, "force on c_origin from a_origin: (-d_jc*u_jc)*b_axes.x;");
-    assert!(!notes.contains("stiffness"), "{notes}");
+    // gravity and the three springs
+    let source = hodograph_generator::source::Source::file("imported.mech", &model);
+    let loads = hodograph_generator::check::check(&source).mechanism.unwrap().loads;
+    assert_eq!(loads.iter().filter(|load| load.potential).count(), 4, "{model}");
+    let told = "the spring of joint `ja` is a long one along its axis, so that it stores energy: it is exact while the \
+                coordinate is above -100 m";
+    assert!(notes.contains(told), "{notes}");
+    let (model, _) = imported(&mjcf(&body("a", &slide.replace("1 0 0", "0 -1 0"), ""), ""), "m.xml");
+    accepted(&model);
+    has(&model, "ja_anchor = O + l_ja*N.y;");
     let two = body("a", hinge, &body("b", hinge, ""));
     let (model, _) = imported(&mjcf(&two, ""), "m.xml");
     accepted(&model);

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use nalgebra::Vector3;
 
 use super::description::{self, Actuator, Mimic, Robot};
+use super::forces::long_spring;
 
 /// The motion that a joint allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -274,6 +275,13 @@ fn read_joint(
             ));
             *number = 0.0;
         }
+    }
+    if stiffness != 0.0 && motion == Motion::Slide {
+        let long = long_spring(joint.spring_rests_at);
+        notes.push(format!(
+            "{at}: the spring of joint `{name}` is a long one along its axis, so that it stores energy: it is exact while the \
+             coordinate is above -{long} m"
+        ));
     }
     for (word, angle) in ["roll", "pitch", "yaw"].into_iter().zip(rpy.iter()) {
         let off = (angle / std::f64::consts::FRAC_PI_2).fract().abs();

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::Options;
 use super::description::{Gravity, Robot};
 use super::fixed_links::{Groups, perpendicular};
+use super::forces::long_spring;
 use super::formulas::{axis_word, combination, decimal, rotation, times, weighted};
 use super::names::{Names, mechanism};
 use super::tree::{Joint, Motion, Tree};
@@ -294,13 +295,17 @@ impl Writer<'_> {
                 if let Some(force) = force {
                     self.out.loads.push(format!("force on {point}{reaction}: {};", times(&force, &axis)));
                 }
-                // a spring without length, to the point of the axis at which it exerts no force
+                // a long spring along the axis, whose ends do not meet
                 if let Some((stiffness, rests)) = self.spring(joint, base, SLIDE) {
-                    let end = match rests {
-                        None => origin.clone(),
-                        Some(rests) => self.point(&format!("{base}_rest"), &origin, &times(&rests, &axis)),
-                    };
-                    self.out.loads.push(format!("spring {point} to {end}: {{ stiffness: {stiffness} }};"));
+                    let docs = format!("length of the spring of joint `{base}` at the coordinate 0");
+                    let long = self.parameter(&format!("l_{base}"), "m", long_spring(joint.spring[1]), &docs);
+                    let by = times(&long, &axis);
+                    let back = by.strip_prefix('-').map_or_else(|| format!("-{by}"), str::to_owned);
+                    let end = self.point(&format!("{base}_anchor"), &origin, &back);
+                    let length = rests.map_or(long.clone(), |rests| format!("{long} + {rests}"));
+                    self.out.loads.push(format!(
+                        "spring {point} to {end}: {{ stiffness: {stiffness}, length: {length} }};"
+                    ));
                 }
                 LinkFrame { axes, origin: point }
             }
