@@ -27,7 +27,7 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Shortens long names of links, joints and actuators, and of the links of `contacts`.
+    /// Shortens long names: its own, those of links, joints and actuators, and of the links of `contacts`.
     pub fn shorten(&mut self, contacts: &mut [String], notes: &mut Vec<String>) {
         let links = self.links.iter().map(|link| link.name.as_str());
         let joints = self.joints.iter();
@@ -45,6 +45,7 @@ impl Robot {
             joint.actuators.iter_mut().flatten().for_each(|actuator| shorten(&mut actuator.name));
         }
         contacts.iter_mut().for_each(&mut shorten);
+        shorten(&mut self.name);
         notes.extend(short.notes());
     }
 }

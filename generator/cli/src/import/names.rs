@@ -13,7 +13,7 @@ const RESERVED: &[&str] = &[
 
 /// The largest number of letters of a name of a link, joint or actuator; the names that are formed from it
 /// have up to 100, as many as the language allows.
-const LONGEST: usize = 60;
+const LONGEST: usize = 80;
 
 /// Shorter names for the long ones of a description, which stay distinct.
 #[derive(Default)]

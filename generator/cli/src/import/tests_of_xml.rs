@@ -106,14 +106,15 @@ fn long_names_are_shortened() {
     let long = "a".repeat(120);
     let hung = robot("<axis xyz=\"0 0 1\"/>").replace("revolute", "prismatic");
     let source = hung.replace("\"arm\"", &format!("\"{long}1\"")).replace("\"hip\"", &format!("\"{long}2\""));
+    let source = source.replace("\"r\"", &format!("\"{long}3\""));
     let contacts = vec![format!("{long}1")];
     let imported = import(&source, "r.urdf", &Options { contacts, ..Options::default() }).unwrap();
     accepted(&imported.model);
-    let short = "a".repeat(50);
+    let short = "a".repeat(70);
     has(&imported.model, &format!("q_{short}_n2: m,"));
     let notes = imported.notes.join("\n");
     for (end, name) in [("1", short.clone()), ("2", format!("{short}_n2"))] {
-        let told = format!("`{long}{end}` is called `{name}`, because names are at most 60 letters long");
+        let told = format!("`{long}{end}` is called `{name}`, because names are at most 80 letters long");
         assert!(notes.contains(&told), "{notes}");
     }
 }
