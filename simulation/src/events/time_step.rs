@@ -73,6 +73,10 @@ pub(crate) enum Attempt {
 
 /// Number of evaluations of the functions of a step after which it is not bisected any more.
 const LOOKS: usize = 30_000;
+/// After so many of them gaps of faces and edges that end, and their ends, are known to this part of the length of the problem
+/// only.
+const CLOSELY: usize = 6_000;
+const TIES: f64 = 4e-8;
 
 impl Transition<'_> {
     /// Makes one step.
@@ -393,7 +397,10 @@ impl Transition<'_> {
                 most = 0.5 * step.h;
                 continue;
             };
-            let (watched, noise) = self.watched(closed, step.h, &self.stay_apart(&step, turns));
+            let (watched, mut noise) = self.watched(closed, step.h, &self.stay_apart(&step, turns));
+            if looks.get() > CLOSELY {
+                self.blur_ties(&watched, &mut noise);
+            }
             let h = step.h;
             let found = first_crossing(
                 &mut Functions {
@@ -439,6 +446,21 @@ impl Transition<'_> {
             Some(failure) => self.failure(failure),
             None => self.error(None, ErrorKind::Stalled),
         })
+    }
+
+    /// Where sides or corners are at a tie, rounding makes gaps jump between two values that are next to each other. What does
+    /// not become smooth however closely it is looked at is such a jump.
+    fn blur_ties(&self, watched: &[Watched], noise: &mut [f64]) {
+        for (what, noise) in watched.iter().zip(noise) {
+            let ends = match *what {
+                Watched::Gap(contact) | Watched::Entry(contact) => self.ends(contact),
+                Watched::End(_) => true,
+                _ => false,
+            };
+            if ends {
+                *noise = noise.max(TIES * self.front.scales.length);
+            }
+        }
     }
 
     /// Handles an integration that cannot continue.
