@@ -36,6 +36,37 @@ fn planar(bodies: usize, masses: &[[f64; 3]], free: &[[f64; 3]], points: &[Vec<P
 
 const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
 
+/// In a plane a contact that sticks has friction that does nothing, across the plane: the distance from a jam of another that
+/// slides is that of the other unknowns. It was that of the sliding contact by itself, so that no jam was seen.
+#[test]
+fn in_a_plane_contacts_that_slide_jam_beside_others_that_stick() {
+    let mut random = Random::new(0x0e11_a950_0000_0011);
+    let (mut jams, mut own_only) = (0, 0);
+    for _ in 0..400 {
+        let mut place = || (random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-3.0, 3.0));
+        let [one, two] = [place(), place()];
+        let side = |(x, z, lean): (f64, f64, f64)| (0, x, z, lean, 1.0);
+        let masses = [[1.0, 1.0, random.between(0.05, 0.5)]];
+        let points = [vec![side(one)], vec![side(two)]];
+        let mut made = planar(1, &masses, &[GRAVITY], &points, random.between(0.2, 2.0));
+        let direction = Vector2::new(if random.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 }, 0.0);
+        made.slip[1] = Some(direction);
+        let Ok(found) = with_modes(&of(&made), &[Mode::Stick, Mode::Slide(direction)]) else { continue };
+        // n and t of the first, n of the second: with friction of the second, and without
+        let rows = [0, 1, 3];
+        let smooth = DMatrix::from_fn(3, 3, |a, b| made.w[(rows[a], rows[b])]);
+        let friction = |a: usize| -made.mu[1] * direction.x * made.w[(rows[a], 4)];
+        let rough = DMatrix::from_fn(3, 3, |a, b| smooth[(a, b)] + if b == 2 { friction(a) } else { 0.0 });
+        let expected = rough.determinant() / smooth.determinant();
+        let size = expected.abs() + 1.0;
+        assert!((found.f - expected).abs() < 1e-6 * size, "{} instead of {expected}", found.f);
+        let own = 1.0 + friction(2) / made.w[(3, 3)];
+        jams += usize::from(expected < 0.0);
+        own_only += usize::from(expected < 0.0 && own > 0.0);
+    }
+    assert!(jams > 20 && own_only > 5, "{jams} {own_only}");
+}
+
 /// A ladder of length 2 at an angle, its foot on a floor and its top at a wall.
 fn ladder(angle: f64, mu: f64) -> Contacts {
     let (x, z) = (angle.cos(), angle.sin());

@@ -47,7 +47,7 @@ fn ratio(elimination: &Elimination, mut smooth: Square, n: usize) -> Option<f64>
 }
 
 /// The rows and columns of a group.
-fn block(matrix: &Square, n: usize, group: &[usize]) -> Square {
+pub(super) fn block(matrix: &Square, n: usize, group: &[usize]) -> Square {
     let mut block = Square::zeros(group.len() * group.len());
     for (place, value) in block.iter_mut().enumerate() {
         *value = matrix[group[place / group.len()] * n + group[place % group.len()]];

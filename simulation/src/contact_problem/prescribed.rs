@@ -10,7 +10,7 @@ use super::{
     Mode, Problem, Unsolved,
     centre::{By, centre},
     cone::{Cone, least_reserve},
-    jam_distance::distance,
+    jam_distance::{block, distance},
     linear::{Elimination, FEW, SINGULAR, Square, Vector, residual, vector},
     problem::three,
 };
@@ -341,30 +341,53 @@ impl Unknowns {
         }
     }
 
+    /// The matrix without friction where contacts slide: symmetric, and positive definite but for unknowns that depend on
+    /// others.
+    fn smooth(&self, problem: &Problem<'_>, matrix: &Square) -> Square {
+        let mut smooth = matrix.clone();
+        let columns = smooth.chunks_exact_mut(self.list.len().max(1));
+        for (column, from) in columns.zip(&self.list).filter(|(_, from)| from.slides()) {
+            let own = 3 * from.contact;
+            for (value, to) in column.iter_mut().zip(&self.list) {
+                *value = problem.w[(3 * to.contact + to.axis, own)] * (to.scale * from.scale);
+            }
+        }
+        smooth
+    }
+
+    /// Unknowns on which all others depend without friction where contacts slide, if none of these others slides: then with
+    /// friction the equations of the others depend on the rest in the same way, and both can be left out. In a mechanism that
+    /// moves in a plane friction across it is such a one.
+    fn independent(&self, smooth: &Square) -> Option<SmallVec<[usize; FEW]>> {
+        let elimination = Elimination::new(smooth.clone(), self.list.len(), SINGULAR);
+        let (mut kept, others) = elimination.columns_by_rank();
+        kept.sort_unstable();
+        others.iter().all(|&a| !self.list[a].slides()).then_some(kept)
+    }
+
     /// See [`Admissible::f`].
     fn distance_from_jam(&self, problem: &Problem<'_>, matrix: &Square, elimination: &Elimination) -> f64 {
         let m = self.list.len();
         if !self.list.iter().any(Unknown::slides) {
             return 1.0;
         }
-        let normal = |a: usize, b: usize| problem.w[(self.row(b), self.row(a))];
-        if elimination.rank == m {
-            let mut smooth = matrix.clone();
-            for (column, from) in smooth.chunks_exact_mut(m).zip(&self.list).filter(|(_, from)| from.slides())
-            {
-                let own = 3 * from.contact;
-                for (value, to) in column.iter_mut().zip(&self.list) {
-                    *value = problem.w[(3 * to.contact + to.axis, own)] * (to.scale * from.scale);
-                }
-            }
-            if let Some(distance) = distance(matrix, elimination, smooth, m) {
-                return distance;
-            }
+        let smooth = self.smooth(problem, matrix);
+        let found = if elimination.rank == m {
+            distance(matrix, elimination, smooth, m)
+        } else {
+            self.independent(&smooth).and_then(|part| {
+                let own = block(matrix, m, &part);
+                let elimination = Elimination::new(own.clone(), part.len(), 0.0);
+                distance(&own, &elimination, block(&smooth, m, &part), part.len())
+            })
+        };
+        if let Some(distance) = found {
+            return distance;
         }
         let own = |a: usize| {
             let (row, along) = (self.row(a), self.list[a].along);
             let [t, s] = [1, 2].map(|axis| problem.w[(row, row + axis)]);
-            1.0 + (along.y * t + along.z * s) / normal(a, a)
+            1.0 + (along.y * t + along.z * s) / problem.w[(row, row)]
         };
         (0..m).filter(|&a| self.list[a].slides()).map(own).fold(f64::INFINITY, f64::min)
     }
@@ -377,13 +400,25 @@ fn own_growths(problem: &Problem<'_>, modes: &[Mode]) -> SmallVec<[(usize, f64);
     let m = unknowns.list.len();
     let matrix = unknowns.matrix(problem);
     let elimination = Elimination::new(matrix.clone(), m, SINGULAR);
+    let (part, elimination) = if elimination.rank == m {
+        ((0..m).collect(), elimination)
+    } else {
+        let part = unknowns.independent(&unknowns.smooth(problem, &matrix)).unwrap_or_default();
+        let elimination = Elimination::new(block(&matrix, m, &part), part.len(), 0.0);
+        (part, elimination)
+    };
+    let part: SmallVec<[usize; FEW]> = if elimination.rank == part.len() { part } else { SmallVec::new() };
     let growth = |(a, unknown): (usize, &Unknown)| {
         let row = unknowns.row(a);
         let own = problem.w[(row, row)] * unknown.scale.powi(2);
-        let mut unit = Vector::zeros(m);
-        unit[a] = 1.0;
-        let growth =
-            if elimination.rank == m { elimination.solve(&unit)[a] } else { 1.0 / matrix[a * m + a] };
+        let growth = match part.iter().position(|&b| b == a) {
+            Some(place) => {
+                let mut unit = Vector::zeros(part.len());
+                unit[place] = 1.0;
+                elimination.solve(&unit)[place]
+            }
+            None => 1.0 / matrix[a * m + a],
+        };
         (unknown.contact, own * growth)
     };
     unknowns.list.iter().enumerate().filter(|(_, unknown)| unknown.slides()).map(growth).collect()
