@@ -5,7 +5,6 @@
 use std::ops::{Deref, DerefMut};
 
 use nalgebra::DMatrix;
-use smallvec::SmallVec;
 
 /// Systems with at most this many unknowns are stored on the stack: four contacts that stick.
 pub(super) const FEW: usize = 12;
@@ -145,13 +144,6 @@ impl Elimination {
             rank += 1;
         }
         (self.rank, self.even) = (rank, even);
-    }
-
-    /// The columns of A up to the rank, which all others depend on, and these others.
-    pub fn columns_by_rank(&self) -> (SmallVec<[usize; FEW]>, SmallVec<[usize; FEW]>) {
-        let (kept, others) = self.columns.split_at(self.rank);
-        let whole = |columns: &[f64]| columns.iter().map(|&column| column as usize).collect();
-        (whole(kept), whole(others))
     }
 
     /// The pivots up to the rank; their product is the determinant of P A Q.

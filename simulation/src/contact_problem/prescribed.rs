@@ -355,14 +355,12 @@ impl Unknowns {
         smooth
     }
 
-    /// Unknowns on which all others depend without friction where contacts slide, if none of these others slides: then with
-    /// friction the equations of the others depend on the rest in the same way, and both can be left out. In a mechanism that
-    /// moves in a plane friction across it is such a one.
-    fn independent(&self, smooth: &Square) -> Option<SmallVec<[usize; FEW]>> {
-        let elimination = Elimination::new(smooth.clone(), self.list.len(), SINGULAR);
-        let (mut kept, others) = elimination.columns_by_rank();
-        kept.sort_unstable();
-        others.iter().all(|&a| !self.list[a].slides()).then_some(kept)
+    /// The unknowns that move something: in a mechanism that moves in a plane friction across it does not.
+    fn effective(&self, smooth: &Square) -> SmallVec<[usize; FEW]> {
+        let m = self.list.len();
+        let own = |a: usize| smooth[a * m + a];
+        let most = (0..m).map(own).fold(0.0, f64::max);
+        (0..m).filter(|&a| own(a) > SINGULAR * most).collect()
     }
 
     /// See [`Admissible::f`].
@@ -375,11 +373,11 @@ impl Unknowns {
         let found = if elimination.rank == m {
             distance(matrix, elimination, smooth, m)
         } else {
-            self.independent(&smooth).and_then(|part| {
-                let own = block(matrix, m, &part);
-                let elimination = Elimination::new(own.clone(), part.len(), 0.0);
-                distance(&own, &elimination, block(&smooth, m, &part), part.len())
-            })
+            let part = self.effective(&smooth);
+            let own = block(matrix, m, &part);
+            let elimination = Elimination::new(own.clone(), part.len(), 0.0);
+            let whole = elimination.rank == part.len();
+            whole.then(|| distance(&own, &elimination, block(&smooth, m, &part), part.len())).flatten()
         };
         if let Some(distance) = found {
             return distance;
@@ -403,8 +401,8 @@ fn own_growths(problem: &Problem<'_>, modes: &[Mode]) -> SmallVec<[(usize, f64);
     let (part, elimination) = if elimination.rank == m {
         ((0..m).collect(), elimination)
     } else {
-        let part = unknowns.independent(&unknowns.smooth(problem, &matrix)).unwrap_or_default();
-        let elimination = Elimination::new(block(&matrix, m, &part), part.len(), 0.0);
+        let part = unknowns.effective(&unknowns.smooth(problem, &matrix));
+        let elimination = Elimination::new(block(&matrix, m, &part), part.len(), SINGULAR);
         (part, elimination)
     };
     let part: SmallVec<[usize; FEW]> = if elimination.rank == part.len() { part } else { SmallVec::new() };

@@ -1,8 +1,8 @@
-//! Ends a motion if the contact point of a closed contact is no longer determined by the coordinates.
+//! Ends a motion if the contact point of a closed contact, or of one that is struck, is not determined by the coordinates.
 //!
 //! The lowest point of a disc is undefined when the disc lies flat; before, the contact point runs around the
-//! rim ever faster, or it jumps to the other side. A motion with a single contact ends there: the impact of a
-//! whole face would follow (docs/theory.md, section 17.16).
+//! rim ever faster, or it jumps to the other side, as that of two capsules does that turn through parallel. A motion
+//! ends there: the impact of a whole face or line would follow (docs/theory.md, section 17.16).
 
 use hodograph::{ComponentKind, State, StateError};
 
@@ -20,15 +20,46 @@ const SHORT: f64 = 1e-2;
 const CHANGED: f64 = 1e-2;
 /// Number of bisections of a step that distinguish a jump from a rotation.
 const HALVINGS: usize = 30;
+/// Longer steps are examined if a closed contact has a normal velocity above this part of its terms after them: the
+/// integration keeps it at its tolerance.
+const LEFT: f64 = 1e-4;
 
 impl Transition<'_> {
     /// The contact at which the motion ends in this step, if any.
     pub(crate) fn singular(&self, closed: &[Closed], step: &Step) -> Option<usize> {
         let longest = self.front.steps.2;
-        if step.h > SHORT * longest {
+        if step.h > SHORT * longest && !self.has_normal_velocity(closed, step) {
             return None;
         }
         self.undefined(closed, step.t + step.h, &step.end, Some(step.start()))
+    }
+
+    /// Whether a closed contact moves along its normal after a step.
+    fn has_normal_velocity(&self, closed: &[Closed], step: &Step) -> bool {
+        let motion = self.motion(&[]);
+        let (q, u) = motion.split(&step.end);
+        let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &self.front.held };
+        let mut rows = vec![0.0; 3 * u.len()];
+        let least = LEFT.max(self.options.relative_tolerance.sqrt());
+        closed.iter().filter(|closed| self.mechanism.torque(closed.contact).is_none()).any(|closed| {
+            let velocity = self.mechanism.contact_velocity(closed.contact, &state);
+            let known = self.mechanism.partial_velocities(closed.contact, &state, &mut rows);
+            let (Ok(velocity), Ok(())) = (velocity, known) else { return false };
+            let terms: f64 = rows[..u.len()].iter().zip(u).map(|(row, speed)| (row * speed).abs()).sum();
+            let fastest: f64 =
+                rows[..u.len()].iter().zip(&self.front.scale).map(|(row, scale)| (row * scale).abs()).sum();
+            velocity.x.abs() > least * terms.max(LEFT * fastest)
+        })
+    }
+
+    /// Whether the point of a contact that is struck is undefined at the front: a rim that meets a face flush. Corners that
+    /// meet are no such point: each has a contact of its own.
+    pub(crate) fn is_undefined(&self, contact: usize) -> bool {
+        let motion = self.motion(&[]);
+        !self.ends(contact)
+            && self
+                .changes(&motion, contact, self.front.t, &self.front.y, None)
+                .is_ok_and(|changes| changes > CHANGED)
     }
 
     /// The closed contact whose point is undefined at the front.

@@ -36,6 +36,9 @@ const COMPARED: usize = 4;
 impl Transition<'_> {
     /// Handles a closed gap: its contact is struck together with all others that approach now.
     pub(crate) fn strike(&mut self, first: usize) -> Result<(), SimulationError> {
+        if self.is_undefined(first) {
+            return self.end_at(first);
+        }
         let was = self.front.phases.clone();
         let touching = self.touching(Some(first))?;
         self.front.resting = false;
