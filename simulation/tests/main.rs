@@ -23,6 +23,7 @@ mod examples;
 mod exchange;
 mod faces;
 mod flush;
+mod flush_lines;
 mod force_jumps;
 mod implicit;
 mod inclines;

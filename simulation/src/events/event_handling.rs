@@ -42,6 +42,9 @@ impl Transition<'_> {
         };
         let start = self.front.t;
         self.commit(&mut step)?;
+        if self.front.ended.is_some() {
+            return Ok(());
+        }
         if let Some(parts) = &mut self.parts {
             parts.end(watched.guard(closed));
         }

@@ -28,28 +28,52 @@ impl Transition<'_> {
     /// The contact at which the motion ends in this step, if any.
     pub(crate) fn singular(&self, closed: &[Closed], step: &Step) -> Option<usize> {
         let longest = self.front.steps.2;
-        if step.h > SHORT * longest && !self.has_normal_velocity(closed, step) {
+        let parting = self.parting(closed, step);
+        if step.h > SHORT * longest && parting.is_none() {
             return None;
         }
-        self.undefined(closed, step.t + step.h, &step.end, Some(step.start()))
+        let undefined = self.undefined(closed, step.t + step.h, &step.end, Some(step.start()));
+        undefined.or_else(|| parting.filter(|&contact| self.has_run(contact, step)))
     }
 
-    /// Whether a closed contact moves along its normal after a step.
-    fn has_normal_velocity(&self, closed: &[Closed], step: &Step) -> bool {
+    /// A closed contact that moves along its normal after a step.
+    fn parting(&self, closed: &[Closed], step: &Step) -> Option<usize> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&step.end);
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &self.front.held };
         let mut rows = vec![0.0; 3 * u.len()];
         let least = LEFT.max(self.options.relative_tolerance.sqrt());
-        closed.iter().filter(|closed| self.mechanism.torque(closed.contact).is_none()).any(|closed| {
-            let velocity = self.mechanism.contact_velocity(closed.contact, &state);
-            let known = self.mechanism.partial_velocities(closed.contact, &state, &mut rows);
+        let contacts = closed.iter().map(|closed| closed.contact);
+        contacts.filter(|&contact| self.mechanism.torque(contact).is_none()).find(|&contact| {
+            let velocity = self.mechanism.contact_velocity(contact, &state);
+            let known = self.mechanism.partial_velocities(contact, &state, &mut rows);
             let (Ok(velocity), Ok(())) = (velocity, known) else { return false };
             let terms: f64 = rows[..u.len()].iter().zip(u).map(|(row, speed)| (row * speed).abs()).sum();
             let fastest: f64 =
                 rows[..u.len()].iter().zip(&self.front.scale).map(|(row, scale)| (row * scale).abs()).sum();
             velocity.x.abs() > least * terms.max(LEFT * fastest)
         })
+    }
+
+    /// Whether the normal velocity of a contact by the speeds at the end of a step is another one at its start: its point has
+    /// run to another place.
+    fn has_run(&self, contact: usize, step: &Step) -> bool {
+        let motion = self.motion(&[]);
+        let p = self.mechanism.count(ComponentKind::Speed);
+        let (end, start) = (motion.split(&step.end), motion.split(step.start()));
+        let normal = |q: &[f64], time: f64| {
+            let mut rows = vec![0.0; 3 * p];
+            let state = State { time, coordinates: q, speeds: end.1, inputs: &self.front.held };
+            self.mechanism.partial_velocities(contact, &state, &mut rows).ok()?;
+            rows.truncate(p);
+            Some(rows)
+        };
+        let (Some(before), Some(after)) = (normal(start.0, step.t), normal(end.0, step.t + step.h)) else {
+            return false;
+        };
+        let size = after.iter().fold(0.0_f64, |size, row| size.max(row.abs()));
+        before.iter().zip(&after).any(|(before, after)| (before - after).abs() > CHANGED * size)
+            && !self.ends(contact)
     }
 
     /// Whether the point of a contact that is struck is undefined at the front: a rim that meets a face flush. Corners that

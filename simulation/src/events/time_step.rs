@@ -180,6 +180,9 @@ impl Transition<'_> {
                     false => step.next.max((LONGER * self.front.next_settled).min(LONGEST * step.next)),
                 };
                 self.commit(&mut step)?;
+                if self.front.ended.is_some() {
+                    return Ok(());
+                }
                 if step.h > self.instant() {
                     (self.front.crowd, self.front.crowded_contacts) = (0, 0);
                 }

@@ -10,6 +10,8 @@ use crate::integration::stepper::{self, Step};
 use crate::state::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
+/// The greatest part of the kinetic energy so far that a correction may change.
+const PROJECTED: f64 = 1e-5;
 /// Speeds below this part of the greatest speed so far are set to zero.
 const NOTHING: f64 = 1e-100;
 
@@ -24,7 +26,11 @@ impl Transition<'_> {
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
         self.drive_smoothly(step.h)?;
+        let kinetic = self.mechanism.kinetic_energy(&self.here()).ok();
         self.correct()?;
+        if let Some(contact) = self.loses_energy(kinetic, &modes, step) {
+            return self.end_with(contact, step);
+        }
         self.drive()?;
         step.corrected(&self.front.y);
         self.arm(step)?;
@@ -40,6 +46,20 @@ impl Transition<'_> {
             self.front.greatest = self.front.greatest.max(kinetic);
         }
         Ok(())
+    }
+
+    /// The closed contact that moves fastest along its normal after a step whose correction changes the kinetic energy by more
+    /// than the integration may err: its point has run to another place, where it would be struck.
+    fn loses_energy(&self, before: Option<f64>, modes: &Modes, step: &Step) -> Option<usize> {
+        let (before, after) = (before?, self.mechanism.kinetic_energy(&self.here()).ok()?);
+        let most = PROJECTED.max(self.options.relative_tolerance.sqrt()) * self.front.greatest.max(before);
+        if (after - before).abs() <= most {
+            return None;
+        }
+        let contacts = modes.closed.iter().map(|closed| closed.contact);
+        let own = contacts.filter(|&contact| self.mechanism.torque(contact).is_none());
+        let speed = |contact: usize| self.gap_at(step, contact).map_or(0.0, |(_, velocity)| velocity.abs());
+        own.max_by(|&one, &other| speed(one).total_cmp(&speed(other)))
     }
 
     /// Corrects the drift of the front.

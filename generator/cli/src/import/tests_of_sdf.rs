@@ -14,7 +14,7 @@ fn axes_of_old_versions_are_those_of_the_model() {
     let body = |more: &str| {
         let axis = format!("<axis><xyz>0 1 0</xyz>{more}</axis>");
         let turned = "<pose>0 0 0 1.5707963267948966 0 0</pose>";
-        link("a", turned, "") + &joint("j", "revolute", "world", "a", &axis)
+        link("a", turned, "") + &*joint("j", "revolute", "world", "a", &axis)
     };
     let of = |version: &str, more: &str| {
         let (model, notes) = imported(&of_version(&format!(" version=\"{version}\""), &body(more)), "m.sdf");
@@ -51,7 +51,7 @@ fn axes_of_old_versions_are_those_of_the_model() {
 /// A world of SDF before 1.6 has its gravity in `<physics>`.
 #[test]
 fn gravity_is_where_the_version_has_it() {
-    let body = link("a", "", "") + &joint("j", "revolute", "world", "a", "");
+    let body = link("a", "", "") + &*joint("j", "revolute", "world", "a", "");
     let with = |version: &str| {
         let physics = "<world name=\"w\"><physics><gravity>0 0 -3</gravity></physics><model";
         let source = of_version(version, &body).replace("<model", physics);
@@ -73,7 +73,7 @@ fn cube(density: &str) -> String {
 fn inertias_are_computed_from_collisions() {
     let of = |inertial: &str, collisions: &str| {
         let link = format!("<link name=\"a\">{inertial}{collisions}</link>\n");
-        sdf(&(link + &joint("j", "revolute", "world", "a", "<axis><xyz>0 1 0</xyz></axis>")))
+        sdf(&(link + &*joint("j", "revolute", "world", "a", "<axis><xyz>0 1 0</xyz></axis>")))
     };
     let auto = "<inertial auto=\"true\"/>";
     let stated = cube("<density>300</density>");
@@ -86,7 +86,7 @@ fn inertias_are_computed_from_collisions() {
     has(&imported(&of(auto, &cube("")), "m.sdf").0, "m_a: kg = 1000,");
     let usual = "<inertial auto=\"1\"><density>20</density></inertial>";
     has(&imported(&of(usual, &cube("")), "m.sdf").0, "m_a: kg = 20,");
-    has(&imported(&of(usual, &(cube("") + &stated)), "m.sdf").0, "m_a: kg = 320,");
+    has(&imported(&of(usual, &(cube("") + &*stated)), "m.sdf").0, "m_a: kg = 320,");
     let mesh = "<collision name=\"d\"><geometry><mesh/></geometry></collision>";
     for (source, said) in [
         (
@@ -115,8 +115,8 @@ fn nothing_of_sdf_is_dropped_silently() {
     let axis = "<axis xyz=\"1 0 0\"><xyz expresed_in=\"__model__\">0 1 0</xyz><dynamics><dampng>2</dampng></dynamics></axis>";
     let added = "</inertia><fluid_added_mass><xx>3</xx></fluid_added_mass>";
     let body = link("a", "", "").replace("</inertia>", added)
-        + &link("b", "<pose relative_too=\"a\" frame=\"a\">0 0 1 0 0 0</pose>", "")
-        + &joint("j", "revolute", "a", "b", axis);
+        + &*link("b", "<pose relative_too=\"a\" frame=\"a\">0 0 1 0 0 0</pose>", "")
+        + &*joint("j", "revolute", "a", "b", axis);
     let (_, notes) = imported(&sdf(&body), "m.sdf");
     for told in [
         "m.sdf:3:22: ignored attribute `relative_too` of <pose>",
@@ -155,14 +155,14 @@ fn nothing_of_sdf_is_dropped_silently() {
 /// The pose of a model is that of its placement frame; `frame` is the name that `relative_to` had until 1.6.
 #[test]
 fn poses_are_relative_to_what_the_version_names() {
-    let body = "<pose>1 0 0 0 0 0</pose>".to_owned() + &link("a", "<pose>0 0 3 0 0 0</pose>", "");
+    let body = "<pose>1 0 0 0 0 0</pose>".to_owned() + &*link("a", "<pose>0 0 3 0 0 0</pose>", "");
     let placed = sdf(&body).replace("name=\"m\"", "name=\"m\" placement_frame=\"a\"");
     let (model, notes) = imported(&placed, "m.sdf");
     has(&model, "q_a_x: m = 1,");
     has(&model, "q_a_z: m,");
     assert!(notes.is_empty(), "{notes}");
     let named =
-        link("a", "<pose>0 0 3 0 0 0</pose>", "") + &link("b", "<pose frame=\"a\">0 0 2 0 0 0</pose>", "");
+        link("a", "<pose>0 0 3 0 0 0</pose>", "") + &*link("b", "<pose frame=\"a\">0 0 2 0 0 0</pose>", "");
     has(&imported(&of_version(" version=\"1.6\"", &named), "m.sdf").0, "q_b_z: m = 5,");
     has(&imported(&of_version(" version=\"1.7\"", &named), "m.sdf").0, "q_b_z: m = 2,");
 }
@@ -171,7 +171,7 @@ fn poses_are_relative_to_what_the_version_names() {
 fn poses_may_be_turned_by_quaternions_and_degrees() {
     let of = |attributes: &str, numbers: &str| {
         let body = link("a", &format!("<pose {attributes}>{numbers}</pose>"), "");
-        sdf(&(body + &joint("j", "revolute", "world", "a", "")))
+        sdf(&(body + &*joint("j", "revolute", "world", "a", "")))
     };
     let turned = imported(&of("", "0 0 1 1.5707963267948966 0 0"), "m.sdf").0;
     accepted(&turned);
@@ -224,7 +224,7 @@ fn joints_may_end_at_frames() {
 fn joints_without_ends_are_told() {
     let of = |ends: &str| {
         let hinge = format!("<joint name=\"j\" type=\"revolute\">{ends}</joint>\n");
-        refused(&sdf(&(link("a", "", "") + &hinge)), "m.sdf")
+        refused(&sdf(&(link("a", "", "") + &*hinge)), "m.sdf")
     };
     let told = of("<parent link=\"world\"/><child>a</child>");
     let said =
@@ -235,11 +235,11 @@ fn joints_without_ends_are_told() {
     assert!(told.contains("`wurld`") && told.lines().count() == 1, "{told}");
     let told = of("<parent>a</parent><child>world</child>");
     assert!(told.contains("the world cannot be carried: exchange") && told.lines().count() == 1, "{told}");
-    let lost = "<frame name=\"f\" attached_to=\"zz\"/>\n".to_owned() + &joint("j", "revolute", "f", "a", "");
-    let told = refused(&sdf(&(link("a", "", "") + &lost)), "m.sdf");
+    let lost = "<frame name=\"f\" attached_to=\"zz\"/>\n".to_owned() + &*joint("j", "revolute", "f", "a", "");
+    let told = refused(&sdf(&(link("a", "", "") + &*lost)), "m.sdf");
     assert_eq!(told, "m.sdf:3:1: there is no frame, link or joint `zz`: there are: a, f, j");
     // two elements of one name are one mistake
-    let twins = link("a", "", "") + &joint("a", "revolute", "world", "a", "");
+    let twins = link("a", "", "") + &*joint("a", "revolute", "world", "a", "");
     assert_eq!(refused(&sdf(&twins), "m.sdf"), "m.sdf:3:1: a second `a`: rename one");
 }
 
@@ -247,7 +247,7 @@ fn joints_without_ends_are_told() {
 #[test]
 fn contacts_are_at_the_origins_of_links() {
     let hung = "<pose>0.3 0 0.5 0 0 0</pose><axis><xyz>0 1 0</xyz></axis>";
-    let body = link("a", "<pose>0 0 1 0 0 0</pose>", "") + &joint("k", "revolute", "world", "a", hung);
+    let body = link("a", "<pose>0 0 1 0 0 0</pose>", "") + &*joint("k", "revolute", "world", "a", hung);
     let options = Options { contacts: vec!["a".to_owned()], ..Options::default() };
     let model = import(&sdf(&body), "m.sdf", &options).unwrap().model;
     accepted(&model);
@@ -260,7 +260,7 @@ fn springs_of_sdf_store_energy() {
     let dynamics =
         "<dynamics><spring_stiffness>4</spring_stiffness><spring_reference>0.5</spring_reference></dynamics>";
     let axis = format!("<axis><xyz>0 1 0</xyz>{dynamics}</axis>");
-    let body = link("a", "", "") + &joint("j", "revolute", "world", "a", &axis);
+    let body = link("a", "", "") + &*joint("j", "revolute", "world", "a", &axis);
     let (model, _) = imported(&sdf(&body), "m.sdf");
     accepted(&model);
     has(&model, "torsion a_axes about a_axes.y: { angle: q_j, rest: q0_j, stiffness: s_j };");
