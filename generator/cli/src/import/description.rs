@@ -223,3 +223,9 @@ fn text(node: Option<Node>, attribute: &str) -> String {
 fn number(node: Option<Node>, attribute: &str) -> f64 {
     numbers(node, attribute).map_or(0.0, |[number]| number)
 }
+
+/// The length of the spring of a joint that slides, m, which exerts no force at this coordinate: a spring whose
+/// ends meet has no direction there, so that it is longer than any joint slides.
+pub fn long_spring(rests_at: f64) -> f64 {
+    f64::max(100.0, 10.0 * rests_at.abs())
+}

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::description::{Inertial, Robot};
+use super::poses::rotation_of;
 use super::symmetric::symmetric;
 use super::tree::{Motion, Tree};
 
@@ -66,24 +67,6 @@ pub struct Groups {
     pub groups: Vec<Group>,
     /// index into `groups`, per link
     pub of_link: Vec<usize>,
-}
-
-/// Sine and cosine of an angle; exact if the angle is a right angle to 10 digits.
-fn sine_cosine(angle: f64) -> (f64, f64) {
-    let quarters = angle / std::f64::consts::FRAC_PI_2;
-    if (quarters - quarters.round()).abs() > 1e-10 || quarters.abs() > 1e9 {
-        return angle.sin_cos();
-    }
-    [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][(quarters.round() as i64).rem_euclid(4) as usize]
-}
-
-/// The matrix of roll, pitch and yaw: its columns are the rotated axes.
-pub fn rotation_of(rpy: &Vector3<f64>) -> Matrix3<f64> {
-    let [(sr, cr), (sp, cp), (sy, cy)] = [rpy.x, rpy.y, rpy.z].map(sine_cosine);
-    let roll = Matrix3::new(1.0, 0.0, 0.0, 0.0, cr, -sr, 0.0, sr, cr);
-    let pitch = Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
-    let yaw = Matrix3::new(cy, -sy, 0.0, sy, cy, 0.0, 0.0, 0.0, 1.0);
-    yaw * pitch * roll
 }
 
 /// Forms the groups.

@@ -5,12 +5,6 @@ use super::formulas::bracketed;
 use super::text::{JointNames, Writer};
 use super::tree::Joint;
 
-/// The length of the spring of a joint that slides, m, which exerts no force at this coordinate: a spring whose
-/// ends meet has no direction there, so that it is longer than any joint slides.
-pub fn long_spring(rests_at: f64) -> f64 {
-    f64::max(100.0, 10.0 * rests_at.abs())
-}
-
 impl Writer<'_> {
     /// The force along the axis of a joint, if any: that of its input or actuators, minus damping.
     pub(super) fn effort(

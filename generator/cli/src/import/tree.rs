@@ -4,8 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::description::{self, Actuator, Mimic, Robot};
-use super::forces::long_spring;
+use super::description::{self, Actuator, Mimic, Robot, long_spring};
 
 /// The motion that a joint allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

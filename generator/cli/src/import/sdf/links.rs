@@ -7,9 +7,8 @@ use super::{Reader, WORLD, child};
 use crate::import::chains::Chains;
 use crate::import::collision::{Collision, Solid, only_shape};
 use crate::import::description::{Inertial, Joint, Link};
-use crate::import::fixed_links::rotation_of;
 use crate::import::masses;
-use crate::import::poses::{Pose, along_z};
+use crate::import::poses::{Pose, along_z, rotation_of};
 
 /// A `<collision>`.
 struct Stated<'n> {

@@ -5,6 +5,7 @@ mod frames;
 mod joints;
 mod known;
 mod links;
+mod placed;
 
 use std::collections::HashMap;
 

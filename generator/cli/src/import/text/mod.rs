@@ -5,9 +5,8 @@ mod solids;
 use nalgebra::Vector3;
 
 use super::Options;
-use super::description::{Gravity, Robot};
+use super::description::{Gravity, Robot, long_spring};
 use super::fixed_links::{Groups, perpendicular};
-use super::forces::long_spring;
 use super::formulas::{axis_word, combination, decimal, rotation, times, weighted};
 use super::names::{Names, mechanism};
 use super::tree::{Joint, Motion, Tree};
