@@ -1,15 +1,14 @@
 //! Ends a motion if the contact point of a closed contact, or of one that is struck, is not determined by the coordinates.
 //!
 //! The lowest point of a disc is undefined when the disc lies flat; before, the contact point runs around the
-//! rim ever faster, or it jumps to the other side, as that of two capsules does that turn through parallel. A motion
-//! ends there: the impact of a whole face or line would follow (docs/theory.md, section 17.16).
+//! rim ever faster, or it jumps to the other side. A motion ends there: the impact of a whole face or line would follow (docs/theory.md, section 17.16).
 
 use hodograph::{ComponentKind, State, StateError};
 
 use crate::closed::phase::Closed;
 use crate::closed::turned_axes::{turn_of_tangents, turned};
 use crate::integration::motion::{Failure, Motion};
-use crate::integration::stepper::Step;
+use crate::integration::stepper::{Step, Tolerances};
 use crate::state::transition::Transition;
 use crate::{EventKind, SimulationError};
 
@@ -20,70 +19,27 @@ const SHORT: f64 = 1e-2;
 const CHANGED: f64 = 1e-2;
 /// Number of bisections of a step that distinguish a jump from a rotation.
 const HALVINGS: usize = 30;
-/// Longer steps are examined if a closed contact has a normal velocity above this part of its terms after them: the
-/// integration keeps it at its tolerance.
-const LEFT: f64 = 1e-4;
+/// A contact that is struck is undefined if changes of the coordinates by this part, or by this much in m or rad, change it so:
+/// ten times what rounding leaves of a time and of coordinates. Coarser tolerances say nothing of where the motion is.
+const ROUNDING: f64 = 1e-12;
 
 impl Transition<'_> {
     /// The contact at which the motion ends in this step, if any.
     pub(crate) fn singular(&self, closed: &[Closed], step: &Step) -> Option<usize> {
         let longest = self.front.steps.2;
-        let parting = self.parting(closed, step);
-        if step.h > SHORT * longest && parting.is_none() {
+        if step.h > SHORT * longest {
             return None;
         }
-        let undefined = self.undefined(closed, step.t + step.h, &step.end, Some(step.start()));
-        undefined.or_else(|| parting.filter(|&contact| self.has_run(contact, step)))
-    }
-
-    /// A closed contact that moves along its normal after a step.
-    fn parting(&self, closed: &[Closed], step: &Step) -> Option<usize> {
-        let motion = self.motion(&[]);
-        let (q, u) = motion.split(&step.end);
-        let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &self.front.held };
-        let mut rows = vec![0.0; 3 * u.len()];
-        let least = LEFT.max(self.options.relative_tolerance.sqrt());
-        let contacts = closed.iter().map(|closed| closed.contact);
-        contacts.filter(|&contact| self.mechanism.torque(contact).is_none()).find(|&contact| {
-            let velocity = self.mechanism.contact_velocity(contact, &state);
-            let known = self.mechanism.partial_velocities(contact, &state, &mut rows);
-            let (Ok(velocity), Ok(())) = (velocity, known) else { return false };
-            let terms: f64 = rows[..u.len()].iter().zip(u).map(|(row, speed)| (row * speed).abs()).sum();
-            let fastest: f64 =
-                rows[..u.len()].iter().zip(&self.front.scale).map(|(row, scale)| (row * scale).abs()).sum();
-            velocity.x.abs() > least * terms.max(LEFT * fastest)
-        })
-    }
-
-    /// Whether the normal velocity of a contact by the speeds at the end of a step is another one at its start: its point has
-    /// run to another place.
-    fn has_run(&self, contact: usize, step: &Step) -> bool {
-        let motion = self.motion(&[]);
-        let p = self.mechanism.count(ComponentKind::Speed);
-        let (end, start) = (motion.split(&step.end), motion.split(step.start()));
-        let normal = |q: &[f64], time: f64| {
-            let mut rows = vec![0.0; 3 * p];
-            let state = State { time, coordinates: q, speeds: end.1, inputs: &self.front.held };
-            self.mechanism.partial_velocities(contact, &state, &mut rows).ok()?;
-            rows.truncate(p);
-            Some(rows)
-        };
-        let (Some(before), Some(after)) = (normal(start.0, step.t), normal(end.0, step.t + step.h)) else {
-            return false;
-        };
-        let size = after.iter().fold(0.0_f64, |size, row| size.max(row.abs()));
-        before.iter().zip(&after).any(|(before, after)| (before - after).abs() > CHANGED * size)
-            && !self.ends(contact)
+        self.undefined(closed, step.t + step.h, &step.end, Some(step.start()))
     }
 
     /// Whether the point of a contact that is struck is undefined at the front: a rim that meets a face flush. Corners that
     /// meet are no such point: each has a contact of its own.
     pub(crate) fn is_undefined(&self, contact: usize) -> bool {
         let motion = self.motion(&[]);
-        !self.ends(contact)
-            && self
-                .changes(&motion, contact, self.front.t, &self.front.y, None)
-                .is_ok_and(|changes| changes > CHANGED)
+        let rounding = Tolerances { relative: ROUNDING, absolute: ROUNDING };
+        let changes = self.changes(&motion, contact, (self.front.t, &self.front.y), None, &rounding);
+        !self.ends(contact) && changes.is_ok_and(|changes| changes > CHANGED)
     }
 
     /// The closed contact whose point is undefined at the front.
@@ -103,19 +59,20 @@ impl Transition<'_> {
                 && self.validity(*contact, &there).is_ok_and(|validity| validity >= 0.0)
         };
         closed.iter().map(|closed| closed.contact).filter(own).find(|&contact| {
-            self.changes(&motion, contact, t, y, before).is_ok_and(|changes| changes > CHANGED)
+            let changes = self.changes(&motion, contact, (t, y), before, &self.tolerances());
+            changes.is_ok_and(|changes| changes > CHANGED)
         })
     }
 
-    /// The relative change of the partial velocities of a contact under changes of the coordinates by their
-    /// tolerances, or in a jump since the previous state.
+    /// The relative change of the partial velocities of a contact under changes of the coordinates by tolerances, or in a jump
+    /// since the previous state.
     fn changes(
         &self,
         motion: &Motion<'_>,
         contact: usize,
-        t: f64,
-        y: &[f64],
+        (t, y): (f64, &[f64]),
         before: Option<&[f64]>,
+        tolerances: &Tolerances,
     ) -> Result<f64, StateError> {
         let (q, u) = motion.split(y);
         let p = self.mechanism.count(ComponentKind::Speed);
@@ -158,7 +115,7 @@ impl Transition<'_> {
                 .enumerate()
                 .map(|(index, q)| {
                     let way = if index % 2 == 0 { 1.0 } else { sign };
-                    q + way * (self.options.absolute_tolerance + self.options.relative_tolerance * q.abs())
+                    q + way * (tolerances.absolute + tolerances.relative * q.abs())
                 })
                 .collect();
             most = most.max(part(&partials(&moved)?, &here));

@@ -295,7 +295,7 @@ impl Transition<'_> {
         LOOKED_AT.into_iter().map(at).fold(0.0, f64::max)
     }
 
-    fn tolerances(&self) -> Tolerances {
+    pub(crate) fn tolerances(&self) -> Tolerances {
         Tolerances { relative: self.options.relative_tolerance, absolute: self.options.absolute_tolerance }
     }
 

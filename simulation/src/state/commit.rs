@@ -10,8 +10,10 @@ use crate::integration::stepper::{self, Step};
 use crate::state::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
-/// The greatest part of the kinetic energy so far that a correction may change.
-const PROJECTED: f64 = 1e-5;
+/// The greatest part of the kinetic energy so far that a correction may change, and a velocity that does not matter, in units
+/// of the length and the time of the problem: of what rests all is rounding.
+const PROJECTED: f64 = 1e-6;
+const RESTS: f64 = 1e-6;
 /// Speeds below this part of the greatest speed so far are set to zero.
 const NOTHING: f64 = 1e-100;
 
@@ -29,7 +31,11 @@ impl Transition<'_> {
         let kinetic = self.mechanism.kinetic_energy(&self.here()).ok();
         self.correct()?;
         if let Some(contact) = self.loses_energy(kinetic, &modes, step) {
-            return self.end_with(contact, step);
+            // Forces that hold a point which runs away are none that act: the step is not made.
+            self.front.t = step.t;
+            self.front.y.copy_from_slice(step.start());
+            self.drive()?;
+            return self.end_at(contact);
         }
         self.drive()?;
         step.corrected(&self.front.y);
@@ -48,18 +54,29 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// The closed contact that moves fastest along its normal after a step whose correction changes the kinetic energy by more
-    /// than the integration may err: its point has run to another place, where it would be struck.
+    /// The closed contact whose velocity a correction changes most, if it changes the kinetic energy by more than the
+    /// integration may err: the point has run to another place, where the bodies would strike each other.
     fn loses_energy(&self, before: Option<f64>, modes: &Modes, step: &Step) -> Option<usize> {
-        let (before, after) = (before?, self.mechanism.kinetic_energy(&self.here()).ok()?);
+        let here = self.here();
+        let (before, after) = (before?, self.mechanism.kinetic_energy(&here).ok()?);
         let most = PROJECTED.max(self.options.relative_tolerance.sqrt()) * self.front.greatest.max(before);
         if (after - before).abs() <= most {
             return None;
         }
+        let p = here.speeds.len();
+        let change: Vec<f64> =
+            here.speeds.iter().zip(&step.end[here.coordinates.len()..]).map(|(a, b)| a - b).collect();
+        let mut rows = vec![0.0; 3 * p];
+        let mut changed = |contact: usize| -> Option<(usize, f64)> {
+            self.mechanism.partial_velocities(contact, &here, &mut rows).ok()?;
+            let along = |row: &[f64]| row.iter().zip(&change).map(|(row, by)| row * by).sum::<f64>().abs();
+            Some((contact, rows.chunks_exact(p).map(along).fold(0.0, f64::max)))
+        };
+        let rests = RESTS * self.front.scales.length / self.front.scales.time;
         let contacts = modes.closed.iter().map(|closed| closed.contact);
         let own = contacts.filter(|&contact| self.mechanism.torque(contact).is_none());
-        let speed = |contact: usize| self.gap_at(step, contact).map_or(0.0, |(_, velocity)| velocity.abs());
-        own.max_by(|&one, &other| speed(one).total_cmp(&speed(other)))
+        let most = own.filter_map(&mut changed).max_by(|one, other| one.1.total_cmp(&other.1));
+        most.filter(|(_, by)| *by > rests).map(|(contact, _)| contact)
     }
 
     /// Corrects the drift of the front.
