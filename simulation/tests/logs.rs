@@ -2,7 +2,7 @@
 //! (docs/theory.md, 16.11).
 
 use crate::common::{names, run, start, surface};
-use crate::many::model;
+use crate::many::{model, numeric};
 use hodograph::Law;
 use hodograph_simulation::{Event, Options, Simulation};
 
@@ -158,5 +158,38 @@ fn a_log_rolls_over_an_edge_as_a_ball_does() {
         // it turns about its axis alone
         let u = simulation.speeds();
         assert!(u[2].abs() < 1e-9 && u[4].abs() < 1e-9 && u[5].abs() < 1e-9, "{u:?}");
+    }
+}
+
+/// A log upright in the corner of two walls and a floor rolls over the floor along a wall: nothing presses it against that
+/// wall, beside which a force at its two ends would jam with the floor.
+#[test]
+fn contacts_that_are_not_pressed_do_not_jam() {
+    let log = numeric(
+        "log",
+        "mechanism Log;
+        parameters { m: kg = 1, J: kg*m^2 = 0.01, J2: kg*m^2 = 0.004, r: m = 0.1, l: m = 0.3, g: m/s^2 = 9.81 }
+        coordinates { x: m, y: m, z: m, e0: 1 = 1, e1: 1, e2: 1, e3: 1 }
+        speeds { vx: m/s, vy: m/s, vz: m/s, w1: rad/s, w2: rad/s, w3: rad/s }
+        frames { B = N.quaternion(e0, e1, e2, e3); }
+        angular_velocities { B = w1*B.x + w2*B.y + w3*B.z; }
+        points { G = O + x*N.x + y*N.y + z*N.z; }
+        velocities { G = vx*N.x + vy*N.y + vz*N.z; }
+        bodies { Log { frame: B, centre: G, mass: m, inertia: [J, J, J2] } }
+        shapes { Floor { plane: N.z }, West { plane: N.x }, South { plane: N.y }, Hull { of: Log, capsule: [r, l], axis: B.z } }
+        loads { gravity: -g*N.z; }
+        contacts { floor { Hull on Floor }, west { Hull on West }, south { Hull on South } }",
+    );
+    for (mu, turning) in [(0.3, [1.0, 0.0]), (0.8, [1.0, 0.0]), (0.3, [0.0, -1.0]), (0.8, [0.0, -1.0])] {
+        let u = [0.0, 0.0, 0.0, turning[0], turning[1], 0.0];
+        let q = [0.1, 0.1, 0.25, 1.0, 0.0, 0.0, 0.0];
+        let mut simulation = start(&log, &q, &u, surface(mu, 0.0, Law::Newton));
+        let energy = |simulation: &Simulation<'_>| {
+            let account = simulation.energy().unwrap();
+            account.kinetic + account.potential.unwrap() - account.impacts - account.friction
+        };
+        let before = energy(&simulation);
+        run(&mut simulation, 1.0);
+        assert!((energy(&simulation) - before).abs() < 1e-9, "{mu} {turning:?}");
     }
 }

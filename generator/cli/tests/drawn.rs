@@ -82,7 +82,9 @@ fn the_name_or_the_option_decides_the_format_of_a_plot() {
 
 #[test]
 fn plots_of_nothing_are_refused() {
-    assert_eq!(hodograph(&["plot", "--mu", "0.5", "--e", "1"], "{").error_kind(), "bad_json");
+    let broken = hodograph(&["plot", "--mu", "0.5", "--e", "1"], "{");
+    assert_eq!((broken.code, broken.stdout.as_str()), (1, ""), "a picture is never an error in words");
+    assert!(broken.stderr.contains("JSON"), "{}", broken.stderr);
     let parting = json!({"m": [1, 0, 0, 1, 0, 1], "v": [1, 0, 0]}).to_string();
     let run = hodograph(&["plot", "--mu", "0.5", "--e", "1"], &parting);
     assert_eq!(run.code, 1);

@@ -137,6 +137,11 @@ impl ClosedContacts {
         self.beta.iter().zip(self.noise.iter()).all(|(beta, noise)| beta.abs() <= IDLE * noise)
     }
 
+    /// The normal acceleration of a contact that is no more than its rounding error, m/s^2.
+    pub fn least_acceleration(&self, i: usize) -> f64 {
+        IDLE * self.noise[3 * i]
+    }
+
     /// The greatest force that changes no acceleration by more than its rounding error, N.
     pub fn least_force(&self) -> f64 {
         let least = |i: usize| {

@@ -5,13 +5,16 @@ use nalgebra::{DVector, Vector2, Vector3};
 use smallvec::SmallVec;
 
 use crate::closed::closed_contacts::ClosedContacts;
-use crate::contact_problem::{self, Mode, UNHELD, Wanted};
+use crate::contact_problem::{self, Admissible, Mode, Problem, UNHELD, Wanted};
 
 /// The lists of so many contacts need no memory from the heap.
 const FEW: usize = 4;
 
 /// Sliding contacts jam where [`Forces::f`] is below this: their forces grow without bound as it falls to zero.
 pub(crate) const JAM: f64 = 1e-6;
+
+/// A contact that jams is not pressed if its force is at most this part of the greatest one.
+const UNPRESSED: f64 = 1e-9;
 
 /// The mode of a closed contact during the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,14 +101,16 @@ pub(crate) fn forces(
     }
     let (slips, modes) = (slips(holds), modes(holds));
     let problem = support.problem(mu, &slips);
-    let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Common)?;
+    let mut found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Common)?;
     if !found.force.iter().all(|value| value.is_finite()) {
         return Err(Lacking::Common);
     }
     if found.f <= 0.0 {
-        let contact = contact_problem::nearest_to_jam(&problem, &modes).unwrap_or(0);
-        let free_acceleration = support.beta[3 * contact];
-        return Err(Lacking::Contact(contact, ContactError::Jam { free_acceleration }));
+        found = beside_idle(support, &problem, &modes, &found, wanted).ok_or_else(|| {
+            let contact = contact_problem::nearest_to_jam(&problem, &modes).unwrap_or(0);
+            let free_acceleration = support.beta[3 * contact];
+            Lacking::Contact(contact, ContactError::Jam { free_acceleration })
+        })?;
     }
     Ok(Forces {
         lambda: found.force,
@@ -115,6 +120,25 @@ pub(crate) fn forces(
         rounding: support.least_force(),
         free: support.beta.amax(),
     })
+}
+
+/// The forces of contacts that jam in these modes, if none of those that jam is pressed or parts: without them nothing jams,
+/// and they stay as they are (docs/theory.md, section 17.10).
+fn beside_idle(
+    support: &ClosedContacts,
+    problem: &Problem<'_>,
+    modes: &[Mode],
+    jammed: &Admissible,
+    wanted: Wanted,
+) -> Option<Admissible> {
+    let least = UNPRESSED * jammed.force.amax() + support.least_force();
+    let idle = |i: usize| matches!(modes[i], Mode::Slide(_)) && jammed.force[3 * i].abs() <= least;
+    let idle: SmallVec<[usize; FEW]> = (0..modes.len()).filter(|&i| idle(i)).collect();
+    let mut rest: SmallVec<[Mode; FEW]> = SmallVec::from_slice(modes);
+    idle.iter().for_each(|&i| rest[i] = Mode::Separate);
+    let found = contact_problem::found(problem, &rest, None, wanted).ok()?;
+    let stays = |&i: &usize| found.acceleration[3 * i].abs() <= support.least_acceleration(i);
+    (!idle.is_empty() && found.f > 0.0 && idle.iter().all(stays)).then_some(found)
 }
 
 /// The directions of slip of contacts.

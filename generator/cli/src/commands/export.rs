@@ -53,7 +53,8 @@ pub struct Arguments {
 ///
 /// The model has errors or cannot be derived; the folder exists or cannot be written.
 pub fn run(arguments: &Arguments) -> Outcome {
-    if arguments.fmu { unit(arguments) } else { library(arguments) }
+    let written = if arguments.fmu { unit(arguments) } else { library(arguments) };
+    written.map_err(Stop::on_standard_error)
 }
 
 /// The value of a dependency in a manifest: a folder, or the published version.

@@ -94,12 +94,16 @@ enum Kind {
     Portrait,
 }
 
-/// Runs the command.
+/// Runs the command. Errors are reported on standard error; standard output holds the picture only.
 ///
 /// # Errors
 ///
-/// An error object for mistakes in the collision.
+/// [`Stop::Call`] for mistakes in the options; [`Stop::Fault`] for mistakes in the state or the collision.
 pub fn run(arguments: &Arguments) -> Outcome {
+    drawn(arguments).map_err(Stop::on_standard_error)
+}
+
+fn drawn(arguments: &Arguments) -> Outcome {
     let format = Format::of(arguments.format, arguments.output.as_deref())?;
     if format == Format::Png && arguments.output.is_none() && std::io::stdout().is_terminal() {
         return Err(Stop::Call("a picture is not for a terminal: give --output FILE.png".to_owned()));

@@ -36,8 +36,8 @@ use crate::stop::{Outcome, Stop};
 ///   hodograph simulate models/free_box_corner.mech --until 1 --mu 0.3 --e 0.5 --law stronge --html box.html
 ///
 /// At a terminal the answer is a set of tables and a summary, else JSON lines: {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
-/// and so on at each event: collision, impact_without_collision, contact, lift_off, slip, stick,
-/// roll, roll_ends, spin, spin_ends, rest; singular where the motion ends since the point of a contact is undefined there. Times of events do not depend on --step.
+/// and so on at each event: collision, struck_together, impact_without_collision, contact, lift_off,
+/// slip, stick, roll, roll_ends, spin, spin_ends, rest; singular where the motion ends since the point of a contact is undefined there. Times of events do not depend on --step.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -124,7 +124,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
             "--step and --max-step must be positive and finite, and --until finite".to_owned(),
         ));
     }
-    arguments.outcomes.check()?;
+    arguments.outcomes.check(arguments.format)?;
     let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
     Options::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
     let mut read = model::files_of(&arguments.model);

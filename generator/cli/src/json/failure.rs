@@ -51,7 +51,7 @@ impl Serialize for Kind {
     }
 }
 
-/// An error of `solve`, `eval` or `collide`.
+/// An error of a command that answers in JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failure {
     /// the kind of the error

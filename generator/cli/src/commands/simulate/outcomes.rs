@@ -41,15 +41,18 @@ pub struct OutcomesArguments {
 }
 
 impl OutcomesArguments {
-    /// Refuses a seed of nothing.
+    /// Refuses a seed of nothing, and rows of a set.
     ///
     /// # Errors
     ///
     /// [`Stop::Call`].
-    pub fn check(&self) -> Outcome {
-        match (self.outcomes, self.seed) {
-            (None, Some(_)) => {
+    pub fn check(&self, format: Option<Format>) -> Outcome {
+        match (self.outcomes, self.seed, format) {
+            (None, Some(_), _) => {
                 Err(Stop::Call("--seed is of --outcomes alone: give that, or leave it out".to_owned()))
+            }
+            (Some(_), _, Some(Format::Csv)) => {
+                Err(Stop::Call("--outcomes has no rows: take --format json or table".to_owned()))
             }
             _ => Ok(()),
         }
@@ -110,9 +113,9 @@ pub fn outcomes(
     }
     let report = Report::new(mechanism, &motions, &set, seed);
     match format {
-        Format::Json => output::json(&report),
+        // Rows are refused before anything moves.
+        Format::Json | Format::Csv => output::json(&report),
         Format::Table => output::text(&report.text(mechanism)),
-        Format::Csv => Err(Stop::Call("--outcomes has no rows: take --format json or table".to_owned())),
     }
 }
 
