@@ -27,6 +27,7 @@ mod flush_lines;
 mod force_jumps;
 mod implicit;
 mod inclines;
+mod late_edges;
 mod ledge;
 mod logs;
 mod many;

@@ -49,6 +49,8 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// The error of a direction turns components into each other: a component has at least this part of the greatest of these
 /// errors.
 const DIRECTIONS: f64 = 1.0 / 32.0;
+/// Accelerations below this part of the greatest one of any speed are none: repeated corrections leave as much.
+const NOTHING: f64 = 1e-60;
 /// Bodies that move side by side have relative accelerations of up to this many times that rounding error:
 /// their normals have the relative error of positions over radii.
 const IDLE: f64 = 128.0;
@@ -109,8 +111,10 @@ impl ClosedContacts {
         let p = speeds.len().max(1);
         numbers.clear();
         numbers.extend(speeds.iter().zip(accelerations).map(|(u, a)| a.abs() + turns * u.abs()));
+        let least = NOTHING * numbers.iter().fold(0.0, |most: f64, size| most.max(*size));
         for (noise, column) in self.noise.iter_mut().zip(self.partials.as_slice().chunks_exact(p)) {
-            *noise = ROUNDING * column.iter().zip(&*numbers).map(|(v, size)| v.abs() * size).sum::<f64>();
+            let terms = column.iter().zip(&*numbers).map(|(v, size)| v.abs() * (size + least)).sum::<f64>();
+            *noise = ROUNDING * terms;
         }
         for own in self.noise.as_mut_slice().chunks_exact_mut(3) {
             let turned = DIRECTIONS * own.iter().fold(0.0_f64, |most, noise| most.max(*noise));

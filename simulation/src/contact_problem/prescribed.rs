@@ -181,7 +181,7 @@ pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
         .then_some(found)
 }
 
-/// An acceleration along a plane without friction below this share of the free ones is a rounding error.
+/// An acceleration along a plane without friction below this share of the greatest free one is a rounding error.
 pub(crate) const UNHELD: f64 = 1e-9;
 
 /// A margin is satisfied if it is at least minus this.
@@ -191,10 +191,12 @@ pub(super) const FITS: f64 = 1e-13;
 /// only forces beyond all bounds could prevent exactly, because they can hardly move relative to each other.
 fn held(problem: &Problem<'_>, modes: &[Mode], acceleration: &DVector<f64>) -> bool {
     let size = acceleration_scale(problem);
+    // The same as ends the mode later: else it would end and begin again.
+    let unheld = UNHELD * problem.beta.amax();
     modes.iter().enumerate().all(|(i, mode)| {
         let a = three(acceleration, i);
-        let least = if problem.mu[i] > 0.0 { INCONSISTENT } else { UNHELD };
-        !matches!(mode, Mode::Stick) || hypot(a.y, a.z) <= least * size[i] + problem.noise(3 * i + 1)
+        let least = if problem.mu[i] > 0.0 { INCONSISTENT * size[i] } else { unheld };
+        !matches!(mode, Mode::Stick) || hypot(a.y, a.z) <= least + problem.noise(3 * i + 1)
     })
 }
 

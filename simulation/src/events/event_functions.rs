@@ -90,7 +90,7 @@ impl Transition<'_> {
                     Leaving::Bounced => rate(),
                     Leaving::Lifted { risen, .. } if risen > 0.0 => h * rate(),
                     Leaving::Lifted { .. } => rate() + self.left_at_lift_off(contact),
-                    Leaving::Apart | Leaving::Near => self.rounding_of_gap(contact),
+                    Leaving::Apart | Leaving::Near => self.rounding_of_gap(contact).max(self.left_of_loops()),
                 });
             }
             if beside.contains(&contact) {
@@ -155,6 +155,13 @@ impl Transition<'_> {
     /// A bound of the rounding error of a gap, m.
     pub(crate) fn rounding_of_gap(&self, contact: usize) -> f64 {
         4.0 * f64::EPSILON * self.gap_size(contact, self.size_of_coordinates())
+    }
+
+    /// How far loops may be open within a step, m: gaps follow coordinates there that are integrated, and a slider at its dead
+    /// centre touches a stop that it just reaches.
+    fn left_of_loops(&self) -> f64 {
+        let loops = self.mechanism.count(ComponentKind::DependentCoordinate) > 0;
+        if loops { self.options.absolute_tolerance } else { 0.0 }
     }
 
     /// Checks that a closing gap is known: the place of a collision cannot be determined if rounding exceeds

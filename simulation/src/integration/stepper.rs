@@ -28,6 +28,9 @@ const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const GREATEST_FACTOR: f64 = 10.0;
 
+/// Rates jump within a step if all of them are those before or behind, up to this part of the change.
+const JUMPS: f64 = 1e-2;
+
 /// A system y' = f(t, y).
 pub trait System {
     /// Writes the rates; NaN where it has none.
@@ -162,7 +165,7 @@ pub struct Tolerances {
 
 /// A step from (t, y) of at most `h` whose error is within the tolerances; `first` are the initial rates if
 /// they are known. A step with rates that are not finite is rejected. `None` if the initial rates are not
-/// finite, or the step became too small.
+/// finite, or the step became as small as a rounding error of the time and no jump of the rates is the cause.
 pub fn step(
     system: &mut (impl System + ?Sized),
     (t, y, first): (f64, &[f64], Option<&[f64]>),
@@ -171,21 +174,21 @@ pub fn step(
 ) -> Option<Step> {
     let (asked, least) = (h, 16.0 * f64::EPSILON * t.abs().max(1e-9 * h));
     let mut stages = Stages::new(system, t, y, first);
-    let mut refused = false;
+    let mut refused = None;
     for _ in 0..REFUSALS {
         if h < least && h < asked {
-            return None;
+            return refused.and_then(|h| stages.over_a_jump(system, h, tolerances));
         }
         stages.compute(system, h);
         let error = stages.error(h, tolerances);
         let mut factor = (SAFETY * error.powf(-1.0 / ORDER as f64)).clamp_from(LEAST_FACTOR, GREATEST_FACTOR);
         if error <= 1.0 {
-            if refused {
+            if refused.is_some() {
                 factor = factor.min(1.0);
             }
             return stages.finish(system, h, h * factor);
         }
-        refused = true;
+        refused = Some(h);
         h *= factor;
     }
     None
@@ -286,6 +289,35 @@ impl<'y> Stages<'y> {
         let both = fifth + 0.01 * third;
         let both = if both <= 0.0 { 1.0 } else { both };
         h * fifth * (1.0 / (both * n as f64)).sqrt()
+    }
+
+    /// The step that was computed last, over a length that is a rounding error of the time, if its error is that of a jump of
+    /// the rates: all rates within it are those of its start or of its end, and so are those behind it. The time of the jump is
+    /// not known better.
+    fn over_a_jump(
+        mut self,
+        system: &mut (impl System + ?Sized),
+        h: f64,
+        tolerances: &Tolerances,
+    ) -> Option<Step> {
+        let n = self.start.len();
+        let allowed = |i: usize| tolerances.absolute + tolerances.relative * self.start[i].abs();
+        let scales: Vec<f64> = (0..n).map(|i| 1.0 / allowed(i)).collect();
+        let change = |from: &[f64], to: &[f64]| -> f64 {
+            scales.iter().zip(from).zip(to).map(|((scale, from), to)| scale * (to - from).abs()).sum()
+        };
+        // The last stage is at the end. No comparison holds where a rate is not finite.
+        let last = self.k(STAGES - 1).to_vec();
+        let least = JUMPS * change(self.k(0), &last);
+        let on_a_side = |i: usize| change(self.k(0), self.k(i)).min(change(self.k(i), &last)) <= least;
+        if !(1..STAGES).all(on_a_side) {
+            return None;
+        }
+        let mut behind = vec![0.0; n];
+        self.state.copy_from_slice(&self.end);
+        add(&mut self.state, &last, &[1.0], h);
+        system.rates(self.t + 2.0 * h, &self.state, &mut behind);
+        if change(&last, &behind) <= least { self.finish(system, h, h) } else { None }
     }
 
     /// The step with its dense output; `None` if its final state is not finite.
@@ -399,6 +431,33 @@ mod tests {
         let mut broken =
             |t: f64, _: &[f64], rates: &mut [f64]| rates.fill(if t > 3.0 { f64::NAN } else { 1.0 });
         assert!(super::step(&mut broken, (3.0, &[1.0], None), 1.0, &tolerances).is_none());
+    }
+
+    /// Late in a motion a jump of the rates lies within a rounding error of the time; a pole has no step.
+    #[test]
+    fn a_jump_is_passed_by_a_step_as_short_as_the_time_is_known() {
+        let tolerances = Tolerances { relative: 1e-12, absolute: 1e-12 };
+        let mut jump = |_: f64, y: &[f64], rates: &mut [f64]| {
+            (rates[0], rates[1]) = (y[1], if y[0] < 3.0 { 0.0 } else { -2e3 });
+        };
+        let (mut t, mut y) = (1e3, vec![0.0, 10.0]);
+        while t < 1e3 + 0.3 + 1e-6 {
+            let step = step(&mut jump, (t, &y, None), 1e3 + 0.3 + 1.1e-6 - t, &tolerances).unwrap();
+            t += step.h;
+            y = step.end;
+        }
+        assert!((y[1] - 10.0 + 2e3 * 1.1e-6).abs() < 1e-8, "{y:?}");
+        let mut pole = |_: f64, y: &[f64], rates: &mut [f64]| rates[0] = 1.0 / (3.0 - y[0]).max(0.0);
+        let (mut t, mut y) = (1e3, vec![0.0]);
+        let stops = (0..10_000).any(|_| match step(&mut pole, (t, &y, None), 10.0, &tolerances) {
+            Some(step) => {
+                t += step.h;
+                y = step.end;
+                false
+            }
+            None => true,
+        });
+        assert!(stops && y[0] < 3.0, "{t} {y:?}");
     }
 
     /// The end of a step is moved by so short a time that nothing is lost, or not at all.

@@ -109,6 +109,7 @@ impl Transition<'_> {
 
     /// The normal force of the only closed contact vanishes.
     fn lift_off(&mut self, contact: usize) -> Result<(), SimulationError> {
+        self.go_past_a_jump_of(contact)?;
         self.front.phases[contact] = Phase::Open(Leaving::NOW);
         self.front.forces[contact] = Vector3::zeros();
         self.front.resting = false;
@@ -128,7 +129,7 @@ impl Transition<'_> {
     }
 
     /// The present force at a contact; the last decided one if it cannot be evaluated.
-    fn force_of(&self, contact: usize) -> Result<Vector3<f64>, SimulationError> {
+    pub(crate) fn force_of(&self, contact: usize) -> Result<Vector3<f64>, SimulationError> {
         let closed = self.closed();
         let place = closed.iter().position(|closed| closed.contact == contact);
         let evaluation = self.motion(&closed).evaluate(self.front.t, &self.front.y);

@@ -9,6 +9,8 @@ use crate::state::transition::Transition;
 
 /// A condition that ends a mode is zero there up to this part of the forces, unless they jump.
 const CONTINUOUS: f64 = 1e-6;
+/// Behind a jump a condition changes by no more than this part of itself.
+const STEEP: f64 = 1e-2;
 /// The first time by which a motion is continued past a jump, relative to the rounding error of the time, the factor from
 /// one to the next, and their number.
 const FIRST: f64 = 8.0;
@@ -20,10 +22,17 @@ impl Transition<'_> {
     /// at the event the state may lie on either side of the jump, by rounding. Does nothing where the forces are continuous.
     pub(crate) fn go_past_a_jump(&mut self) -> Result<(), SimulationError> {
         let closed = self.closed();
-        if self.least_margin(&closed, self.front.t, &self.front.y).is_none_or(|margin| margin <= CONTINUOUS) {
-            return Ok(());
-        }
+        let here = self.least_margin(&closed, self.front.t, &self.front.y);
+        let Some(margin) = here.filter(|margin| margin.abs() > CONTINUOUS) else { return Ok(()) };
         let rounding = f64::EPSILON * self.front.t.abs().max(self.front.scales.time);
+        if margin < 0.0 {
+            // Behind it by rounding, which may lead back. Beside a jam the condition is steep, and no jump.
+            let after = FIRST * LONGER.powi(2) * rounding;
+            let Some(mut step) = self.part(&closed, after) else { return Ok(()) };
+            let behind = self.least_margin(&closed, self.front.t + after, &step.end);
+            let jumped = behind.is_some_and(|behind| (behind - margin).abs() <= STEEP * margin.abs());
+            return if jumped { self.commit(&mut step) } else { Ok(()) };
+        }
         for trial in 0..TRIALS {
             let after = FIRST * LONGER.powi(trial) * rounding;
             let Some(step) = self.part(&closed, after) else { return Ok(()) };
@@ -34,6 +43,12 @@ impl Transition<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The same where the only closed contact lifts off: its force is compared with the one that it had.
+    pub(crate) fn go_past_a_jump_of(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let (here, before) = (self.force_of(contact)?, self.front.forces[contact]);
+        if here.x.abs() <= CONTINUOUS * before.norm() { Ok(()) } else { self.go_past_a_jump() }
     }
 
     /// The least margin of the conditions of these modes in a state, relative to the forces; `None` where there are no forces.
