@@ -8,7 +8,7 @@ import { FILE, dist, launch, moved, movesOn, put, serve, status, text } from "./
 
 const WIDTHS = [1280, 768, 390];
 /** Compressed, in bytes: of the module, and of the folder with the editor. A change that needs more says so here. */
-const MOST = { module: 850_000, folder: 984_500 };
+const MOST = { module: 853_000, folder: 987_000 };
 
 let browser;
 before(async () => {
