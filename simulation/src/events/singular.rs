@@ -1,7 +1,8 @@
 //! Ends a motion if the contact point of a closed contact, or of one that is struck, is not determined by the coordinates.
 //!
 //! The lowest point of a disc is undefined when the disc lies flat; before, the contact point runs around the
-//! rim ever faster, or it jumps to the other side. A motion ends there: the impact of a whole face or line would follow (docs/theory.md, section 17.16).
+//! rim ever faster, or it jumps to the other side. A motion ends there: the impact of a whole face or line would
+//! follow (docs/theory.md, section 17.16).
 
 use hodograph::{ComponentKind, State, StateError};
 
