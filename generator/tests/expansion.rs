@@ -72,11 +72,9 @@ fn many_threads_get_the_same_code() {
         for thread in 0..8 {
             let (inputs, expected) = (&inputs, &expected);
             scope.spawn(move || {
-                for round in 0..3 {
-                    for i in 0..inputs.len() {
-                        let i = (i + thread + round) % inputs.len();
-                        assert!(expanded(&inputs[i]) == expected[i], "{}", inputs[i]);
-                    }
+                for i in 0..inputs.len() {
+                    let i = (i + thread) % inputs.len();
+                    assert!(expanded(&inputs[i]) == expected[i], "{}", inputs[i]);
                 }
             });
         }

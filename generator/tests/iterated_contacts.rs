@@ -14,7 +14,7 @@ use crate::shapes::{
     Pose, Said, V, along, back, compare, evaluator, model, plus, pose, random_state, said, scaled,
 };
 
-const POSES: usize = 10_000;
+const POSES: usize = 3000;
 
 /// A n/sqrt(n . A n) of an ellipsoid with these semi-axes: where its outward normal is n.
 fn support(sizes: V, n: V) -> V {
@@ -248,7 +248,7 @@ fn spheres_that_do_not_fit_touch_first_where_they_are_said_to() {
             let mut random = Random::new(13);
             let mut state = State::of(&m);
             state.coordinates.iter_mut().for_each(|q| *q = 0.0);
-            for _ in 0..500 {
+            for _ in 0..150 {
                 let [x, y] = [0, 1].map(|_| 2.0 * random.number());
                 (state.coordinates[0], state.coordinates[1], state.coordinates[2]) = (x, y, y);
                 // the level at which the gap that is said at some level above vanishes
@@ -281,7 +281,7 @@ fn spheres_that_do_not_fit_touch_first_where_they_are_said_to() {
             }
         }
         println!("{shape}: {refused} refused, {right} found, at most {worst:?} of the radius in the ground");
-        assert!(refused > 200 && right > 20, "{shape}: {refused} {right}");
+        assert!(refused > 60 && right > 6, "{shape}: {refused} {right}");
         // under much larger spheres a crest may lie between the places at which the ground is looked at
         assert!(worst[0] < 5e-3 && worst[1] < 0.03, "{shape}: {worst:?}");
     }

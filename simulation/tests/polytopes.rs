@@ -171,8 +171,8 @@ fn wedges_on_gems() {
         place: by_quaternion,
         random: |random| in_space([0, 1, 2].map(|_| random.between(-0.8, 0.8)), random),
     };
-    let seen = compare(&bodies, 10_000);
-    assert!(seen.faces.iter().all(|&count| count > 200) && seen.edges > 2000, "{seen:?}");
+    let seen = compare(&bodies, 4000);
+    assert!(seen.faces.iter().all(|&count| count > 80) && seen.edges > 800, "{seen:?}");
 }
 
 /// What is thrown on a polytope moves as what is thrown on the same box: with the same number of events. The number of them
@@ -203,7 +203,7 @@ fn move_alike(names: [&str; 2], middle: [f64; 3], throws: u64) -> usize {
 /// A crate and a table that are polytopes move as those that are boxes: thrown on the edge of the table from all sides.
 #[test]
 fn polytopes_move_as_boxes_do() {
-    assert!(move_alike(["crate_on_table", "crate_of_vertices"], [-0.1, 0.3, 0.0], 6) > 100);
+    assert!(move_alike(["crate_on_table", "crate_of_vertices"], [-0.1, 0.3, 0.0], 3) > 50);
 }
 
 /// So does a log: on the edge and the corner of the table.

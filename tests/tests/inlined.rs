@@ -109,14 +109,15 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The listing of `tests/fixtures/inlined`, compiled by this cargo with these arguments.
-fn listing(cargo: &Path, name: &str, arguments: &[&str], flags: &str) -> Listing {
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inlined").join(name);
+/// The listing of `tests/fixtures/inlined` with a feature, compiled in a folder of builds by this cargo, for another target
+/// than this machine where one is given.
+fn listing(cargo: &Path, builds: &str, target: Option<&str>, feature: &str, flags: &str) -> Listing {
+    let builds = Path::new(env!("CARGO_TARGET_TMPDIR")).join(builds);
     let mut command = Command::new(cargo);
     command
-        .args(["rustc", "--release", "--offline", "--locked", "--lib", "--target-dir"])
-        .arg(&target)
-        .args(arguments)
+        .args(["rustc", "--release", "--offline", "--locked", "--lib", "--features", feature, "--target-dir"])
+        .arg(&builds)
+        .args(target.map(|target| format!("--target={target}")))
         .args(["--", "--emit", "asm"])
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/inlined"));
     // What belongs to the outer build must not leak into the inner one.
@@ -128,20 +129,14 @@ fn listing(cargo: &Path, name: &str, arguments: &[&str], flags: &str) -> Listing
     }
     let output = command.env("RUSTFLAGS", flags).output().expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let mut folders = vec![target];
-    let mut newest = None;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
-            let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-            if path.is_dir() {
-                folders.push(path);
-            } else if name.starts_with("inlined-") && name.ends_with(".s") {
-                let time = entry.metadata().and_then(|data| data.modified()).expect("a time");
-                newest = newest.max(Some((time, path)));
-            }
-        }
-    }
-    let (_, path) = newest.expect("cargo has written a listing");
+    let folder = target.map_or_else(|| builds.clone(), |target| builds.join(target)).join("release/deps");
+    let listed = std::fs::read_dir(folder).expect("a folder").flatten().filter(|entry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        name.starts_with("inlined-") && name.ends_with(".s")
+    });
+    let dated = listed
+        .map(|entry| (entry.metadata().and_then(|data| data.modified()).expect("a time"), entry.path()));
+    let (_, path) = dated.max().expect("cargo has written a listing");
     Listing::read(&std::fs::read_to_string(path).expect("text"))
 }
 
@@ -196,7 +191,8 @@ fn a_specialised_collision_calls_no_function_on_x86_64() {
         eprintln!("skipped: this machine is no x86-64 with Linux, whose listing the test reads");
         return;
     }
-    one_routine_each(&listing(&own_cargo(), "here", &["--features", "std"], ""), &[]);
+    // where the other crates of tests are built
+    one_routine_each(&listing(&own_cargo(), "fixtures", None, "std", ""), &[]);
 }
 
 /// What is called on these processors, by name. Square roots: without the standard library the processor's
@@ -214,9 +210,9 @@ fn a_specialised_collision_calls_square_roots_alone_on_cortex_m() {
         );
         return;
     };
-    for (processor, features, outside) in ON_CORTEX_M {
-        let arguments = ["--target", CORTEX_M, "--features", features];
-        let listing = listing(&cargo, processor, &arguments, &format!("-Ctarget-cpu={processor}"));
+    for (processor, feature, outside) in ON_CORTEX_M {
+        let (builds, flags) = (format!("inlined/{processor}"), format!("-Ctarget-cpu={processor}"));
+        let listing = listing(&cargo, &builds, Some(CORTEX_M), feature, &flags);
         one_routine_each(&listing, outside);
     }
 }

@@ -4,6 +4,7 @@
 //! runs those of `tests/impacts.rs`.
 
 mod accelerations;
+mod answers_for_python;
 mod bicycle;
 mod closed_contacts;
 mod columns;

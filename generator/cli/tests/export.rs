@@ -39,7 +39,7 @@ fn build(folder: &Path) -> PathBuf {
 /// As [`build`], with more arguments for cargo.
 fn build_with(folder: &Path, more: &[&str]) -> PathBuf {
     std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    let target = root().join("target/tmp/fixtures");
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fixtures");
     let mut cargo = Command::new(env!("CARGO"));
     output(cargo.args(["build", "--offline", "--target-dir", target.to_str().unwrap()]).args(more), folder);
     target

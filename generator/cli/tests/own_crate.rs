@@ -29,10 +29,10 @@ pub fn succeeds(command: &mut Command, folder: &Path) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Cargo's command `what` in a crate of one's own, with what is built for the others of these tests.
+/// Cargo's command `what` in a crate of one's own, with what is built for the other crates of tests.
 pub fn commanded(what: &str, folder: &Path) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own_crate");
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fixtures");
     cargo.args([what, "--offline", "--target-dir"]).arg(target).current_dir(folder);
     cargo
 }

@@ -1,5 +1,8 @@
-//! What generated modules answer, bit by bit, for the tests of the wheel: lines of `model routine row
-//! bits..`; states come first.
+//! What generated modules answer, bit by bit, for the tests of the Python package (`bindings/python/test`): lines of `model
+//! routine row bits..`; states come first.
+
+use std::fmt::Write;
+use std::path::Path;
 
 use hodograph::{ComponentKind, Contacts, Law, State, Surface};
 
@@ -13,9 +16,9 @@ fn models() -> Vec<(&'static str, Box<dyn Contacts>)> {
     hodograph_models::every_mechanism!(models)
 }
 
-fn line(model: &str, routine: &str, row: usize, numbers: &[f64]) {
+fn line(text: &mut String, model: &str, routine: &str, row: usize, numbers: &[f64]) {
     let bits: Vec<String> = numbers.iter().map(|number| format!("{:016x}", number.to_bits())).collect();
-    println!("{model} {routine} {row} {}", bits.join(" "));
+    writeln!(text, "{model} {routine} {row} {}", bits.join(" ")).expect("written");
 }
 
 /// A number between -1 and 1.
@@ -23,7 +26,10 @@ fn number(row: usize, index: usize) -> f64 {
     ((row * 71 + index * 13 + 5) as f64 * 0.618_033_988_749_895).fract() * 2.0 - 1.0
 }
 
-fn main() {
+#[test]
+#[ignore = "writes a file for the tests of the Python package"]
+fn answers_are_written_for_python() {
+    let mut text = String::new();
     for (model, m) in models() {
         let [n, p, w] =
             [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input].map(|kind| m.count(kind));
@@ -34,13 +40,13 @@ fn main() {
             let u: Vec<f64> = (0..p).map(|index| u0[index] + 2.0 * number(row, index + 100)).collect();
             let inputs: Vec<f64> = (0..w).map(|index| number(row, index + 200)).collect();
             let state = State { time: 0.1 * row as f64, coordinates: &q, speeds: &u, inputs: &inputs };
-            line(model, "q", row, &q);
-            line(model, "u", row, &u);
-            line(model, "inputs", row, &inputs);
-            let answer = |routine: &str, size: usize, write: &dyn Fn(&mut [f64]) -> bool| {
+            line(&mut text, model, "q", row, &q);
+            line(&mut text, model, "u", row, &u);
+            line(&mut text, model, "inputs", row, &inputs);
+            let mut answer = |routine: &str, size: usize, write: &dyn Fn(&mut [f64]) -> bool| {
                 let mut numbers = vec![0.0; size];
                 if write(&mut numbers) {
-                    line(model, routine, row, &numbers);
+                    line(&mut text, model, routine, row, &numbers);
                 }
             };
             answer("accelerations", p, &|x| m.accelerations(&state, x).is_ok());
@@ -54,4 +60,7 @@ fn main() {
             }
         }
     }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../bindings/python/target");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    std::fs::write(folder.join("reference.txt"), text).expect("written");
 }
