@@ -40,9 +40,11 @@ enum Given<'a> {
 }
 
 fn given(argument: &str) -> Given<'_> {
+    // A name of a part with a point, `a.x`, is none of a state, which has `a_x`: the error of names says so, that of files would not.
     let name = |text: &str| {
         let text = text.trim();
-        !text.is_empty() && text.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
+        let letters = |text: &str| text.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
+        text.split('.').all(|word| !word.is_empty() && letters(word))
     };
     match argument.split_once('=') {
         _ if argument.trim_start().starts_with('{') => Given::Text(argument),

@@ -96,6 +96,7 @@ fn wrong_numbers_are_named() {
         ("--state", "q1=2*", "bad_json", "cannot be read"),
         ("--state", "q1=l", "unknown_name", "`l` is unknown: a number may have"),
         ("--state", "q1=foo(1)", "unknown_name", "there is no function `foo`"),
+        ("--state", "q.1=0.3", "unknown_name", "`q.1`: did you mean `q1`?"),
         ("--state", "q1=0.3;u1=1", "bad_json", "commas stand between numbers"),
         ("--state", "q1=max(0,t-1)", "bad_json", "it depends on the time t"),
         ("--state", "q1=1/0", "not_finite", "it must be finite"),
