@@ -8,6 +8,7 @@ pub(crate) mod event_location;
 pub(crate) mod event_time;
 pub(crate) mod force_functions;
 pub(crate) mod rattling;
+pub(crate) mod rounding_of_functions;
 pub(crate) mod scheduled_events;
 pub(crate) mod singular;
 pub(crate) mod stage_values;

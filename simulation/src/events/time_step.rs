@@ -147,15 +147,16 @@ impl Transition<'_> {
         let (made, signed) = match self.settled_step(&mut closed, &here, most, &ends) {
             Some(made) => (made, true),
             None => {
-                let ends = left.iter().flatten().map(|left| SHARE * left.max(ending));
-                let free = most.min(self.front.next);
-                let most = ends.fold(free, f64::min);
                 let omegas =
                     settled(&self.motion(&closed), self.front.t, &self.front.y, &here, &self.front.scales);
                 for (contact, omega) in closed.iter_mut().zip(omegas) {
                     contact.omega = omega;
                     self.front.omegas[contact.contact] = omega;
                 }
+                self.ends_along_settled(&closed, &mut left);
+                let ends = left.iter().flatten().map(|left| SHARE * left.max(ending));
+                let free = most.min(self.front.next);
+                let most = ends.fold(free, f64::min);
                 match self.attempt(&closed, &here, most)? {
                     Attempt::Made(mut step, crossing) => {
                         // A step that ends with the slip says nothing about the size that the error allows.
@@ -194,6 +195,18 @@ impl Transition<'_> {
                 self.front.turned.fill(Turned::default());
                 self.handle_event(&closed, step, watched, crossing)
             }
+        }
+    }
+
+    /// Replaces the times to the end of slip by those of the rates along settled directions, where directions follow from the
+    /// state: next to none of slip may have another direction, along which it seems to end at once.
+    fn ends_along_settled(&self, closed: &[Closed], left: &mut [Option<f64>]) {
+        if closed.iter().all(|contact| contact.omega.is_none()) {
+            return;
+        }
+        let Ok(settled) = self.motion(closed).evaluate(self.front.t, &self.front.y) else { return };
+        for (i, left) in left.iter_mut().enumerate().filter(|(i, _)| closed[*i].omega.is_some()) {
+            *left = time_of_slip(&settled, i, &self.front.scale);
         }
     }
 

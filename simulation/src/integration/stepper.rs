@@ -179,8 +179,7 @@ pub fn step(
         if h < least && h < asked {
             return refused.and_then(|h| stages.over_a_jump(system, h, tolerances));
         }
-        stages.compute(system, h);
-        let error = stages.error(h, tolerances);
+        let error = if stages.compute(system, h) { stages.error(h, tolerances) } else { f64::NAN };
         let mut factor = (SAFETY * error.powf(-1.0 / ORDER as f64)).clamp_from(LEAST_FACTOR, GREATEST_FACTOR);
         if error <= 1.0 {
             if refused.is_some() {
@@ -204,8 +203,7 @@ pub fn part(
         return Some(Step::still(t, 0.0, y));
     }
     let mut stages = Stages::new(system, t, y, first);
-    stages.compute(system, h);
-    stages.finish(system, h, h * GREATEST_FACTOR)
+    if stages.compute(system, h) { stages.finish(system, h, h * GREATEST_FACTOR) } else { None }
 }
 
 trait ClampFrom {
@@ -256,17 +254,22 @@ impl<'y> Stages<'y> {
         tell(system, i);
     }
 
-    /// All stages of a step, and its final state.
-    fn compute(&mut self, system: &mut (impl System + ?Sized), h: f64) {
+    /// All stages of a step, and its final state; `false` where a stage has no finite rates, which ends the step.
+    fn compute(&mut self, system: &mut (impl System + ?Sized), h: f64) -> bool {
+        let n = self.start.len();
         for i in 1..STAGES {
             self.stage(system, i, h);
+            if !self.k(i).iter().all(|rate| rate.is_finite()) {
+                self.k[(i + 1) * n..STAGES * n].fill(f64::NAN);
+                return false;
+            }
         }
-        let n = self.start.len();
         self.state.fill(0.0);
         add(&mut self.state, &self.k[..STAGES * n], &METHOD.b, 1.0);
         for ((end, start), sum) in self.end.iter_mut().zip(self.start).zip(&self.state) {
             *end = start + h * sum;
         }
+        true
     }
 
     /// The error of the step relative to the tolerances. `state` is the mean rate.

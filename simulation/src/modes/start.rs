@@ -1,5 +1,7 @@
 //! Determines the phases of the contacts in the start state.
 
+use hodograph::{State, StateError};
+
 use crate::closed::closed_contacts::ClosedContacts;
 use crate::closed::phase::{Leaving, Phase};
 use crate::integration::motion::Failure;
@@ -53,8 +55,11 @@ impl Transition<'_> {
             } else if rate > rounding {
                 self.front.phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
+                let parts = self.parts_by_itself(&support, &state, contact).map_err(fault)?;
                 self.front.phases[contact] = Phase::Open(Leaving::NOW);
-                stay.push(contact);
+                if !parts {
+                    stay.push(contact);
+                }
             }
         }
         self.decide(&stay, &was)?;
@@ -62,5 +67,19 @@ impl Transition<'_> {
             Some(contact) => self.strike(contact),
             None => self.look_for_rest(),
         }
+    }
+
+    /// Whether a contact that no force moves along its normal, as at a dead centre, leaves by the motion that it has.
+    fn parts_by_itself(
+        &self,
+        support: &ClosedContacts,
+        state: &State<'_>,
+        contact: usize,
+    ) -> Result<bool, StateError> {
+        if support.coupled[(0, 0)] > 0.0 {
+            return Ok(false);
+        }
+        let free = ClosedContacts::new(self.mechanism, state, &[contact], true)?;
+        Ok(free.beta[0] > free.least_acceleration(0))
     }
 }
