@@ -2,7 +2,7 @@
 //! (docs/theory.md, sections 17.11 and 17.12).
 
 use hodograph::{Law, State};
-use hodograph_simulation::Simulation;
+use hodograph_simulation::{Event, Options, Simulation};
 
 use crate::common::{names, run, start, surface};
 use crate::many::numeric;
@@ -164,4 +164,54 @@ fn slip_that_has_hardly_begun_does_not_end_at_once() {
     let (q, u) = (simulation.coordinates(), simulation.speeds());
     assert!(q[7] < -1e-14 && u[6] < -1e-9 && (q[8] - 0.3).abs() < 1e-12, "{q:?} {u:?}");
     assert!(u[9..12].iter().all(|turn| turn.abs() < 1e-9), "{u:?}");
+}
+
+/// Two books that are pressed together are lifted at both ends: the floor carries nothing once the lift is their weight, and
+/// all of it parts then. Friction there has its limit at the same time, as a double zero, whose place was taken for another.
+#[test]
+fn books_part_from_the_floor_when_they_are_lifted() {
+    let books = numeric(
+        "books",
+        "mechanism Books;
+        parameters {
+            m: kg = 0.4, J: kg*m^2 = 0.00139, wide: m = 0.04, high: m = 0.2, g: m/s^2 = 9.81,
+            press: N = 5, lift: N/s = 8,
+        }
+        coordinates { x: m, y: m = 0.1, q: rad, xx: m = 0.04, yy: m = 0.1, qq: rad }
+        speeds { u: m/s, v: m/s, w: rad/s, uu: m/s, vv: m/s, ww: rad/s }
+        frames { A = N.rotate(z, q); B = N.rotate(z, qq); }
+        points {
+            G = O + x*N.x + y*N.y; L of A = G - wide/2*A.x;
+            H = O + xx*N.x + yy*N.y; R of B = H + wide/2*B.x;
+        }
+        bodies {
+            One { frame: A, centre: G, mass: m, inertia: [J, J, J] },
+            Two { frame: B, centre: H, mass: m, inertia: [J, J, J] },
+        }
+        shapes {
+            Left { of: One, rectangle: [wide, high] }, Right { of: Two, rectangle: [wide, high] },
+            Floor { plane: N.y },
+        }
+        loads {
+            gravity: -g*N.y;
+            force on L: press*N.x + lift/2*time*N.y;
+            force on R: -press*N.x + lift/2*time*N.y;
+        }
+        kinematics {
+            d(x)/dt = u; d(y)/dt = v; d(q)/dt = w; d(xx)/dt = uu; d(yy)/dt = vv; d(qq)/dt = ww;
+        }
+        contacts { between { Left on Right }, left { Left on Floor }, right { Right on Floor } }",
+    );
+    for longest in [f64::INFINITY, 0.05, 0.01] {
+        let options = Options { max_step: longest, ..surface(0.4, 0.0, Law::Newton) };
+        let mut simulation = start(&books, &[0.0, 0.1, 0.0, 0.04, 0.1, 0.0], &[0.0; 6], options);
+        let events = run(&mut simulation, 1.1);
+        let parts: Vec<&Event> = events.iter().filter(|event| event.kind.name() == "lift_off").collect();
+        assert_eq!(parts.len(), 4, "{longest}: {:?}", names(&events));
+        assert!(parts.iter().all(|event| (event.time - 0.981).abs() < 1e-9), "{:?}", names(&events));
+        // What is more than the weight accelerates both: y'' = lift (t - 0.981) / (2 m).
+        let late = 1.1_f64 - 0.981;
+        let height = 0.1 + 8.0 * late.powi(3) / (6.0 * 0.8);
+        assert!((simulation.coordinates()[1] - height).abs() < 1e-9, "{:?}", simulation.coordinates());
+    }
 }

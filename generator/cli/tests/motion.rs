@@ -418,3 +418,34 @@ fn sets_of_outcomes_are_written() {
         lonely.stderr
     );
 }
+
+/// The account of energy begins before the impacts at the start.
+#[test]
+fn impacts_at_the_start_stand_in_the_account_of_energy() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ball.mech");
+    let text = "mechanism Ball;
+parameters { m: kg = 1, g: m/s^2 = 10 }
+coordinates { x: m, y: m }
+speeds { u: m/s, v: m/s }
+points { P = O + x*N.x + y*N.y; }
+particles { B { point: P, mass: m } }
+loads { gravity: -g*N.y; }
+kinematics { d(x)/dt = u; d(y)/dt = v; }
+contacts { floor { point: P, normal: N.y, gap: y, surface: { mu: 0, e: 0.5, law: newton } } }
+";
+    std::fs::write(&path, text).unwrap();
+    let call =
+        ["simulate", path.to_str().unwrap(), "--until", "0.05", "--state", "v=-1,u=1", "--format", "table"];
+    let table = hodograph(&call, "").stdout;
+    let numbers = |name: &str| -> Vec<f64> {
+        let row = table
+            .lines()
+            .find(|line| line.trim_start().starts_with(name))
+            .unwrap_or_else(|| panic!("{table}"));
+        row.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    };
+    // 1 J at first; the impact leaves half of the normal velocity, and gravity takes 10 m/s^2 of it for 0.05 s.
+    assert_eq!(numbers("kinetic"), [1.0, 0.5, -0.5], "{table}");
+    assert_eq!(numbers("impacts"), [-0.375], "{table}");
+}

@@ -184,7 +184,7 @@ pub(crate) type Margins = SmallVec<[[f64; 2]; FEW]>;
 pub(crate) const SLACK: f64 = 2e-12;
 
 /// The functions that are positive while the modes last: for each contact lambda_n, and for a sticking one
-/// (mu lambda_n)^2 - lambda_tan^2 (else 1). Without friction there is no force to compare: a contact that
+/// (mu lambda_n)^2 - lambda_tan^2 (else 1), where the square has the sign of lambda_n: nothing is held without pressure. Without friction there is no force to compare: a contact that
 /// does not slip must not begin to, so its acceleration along the plane takes the place of the force
 /// (theory 17.11).
 pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Margins {
@@ -205,7 +205,7 @@ pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Margins {
                 Hold::Stick => {
                     let most = mu[i] * force.x;
                     let over = force.y * force.y + force.z * force.z;
-                    most * most * (1.0 + 2.0 * SLACK) + (1.0 + mu[i] * mu[i]) * slack.powi(2) - over
+                    most * most.abs() * (1.0 + 2.0 * SLACK) + (1.0 + mu[i] * mu[i]) * slack.powi(2) - over
                 }
             };
             [force.x + slack, cone]

@@ -77,6 +77,10 @@ const LOOKS: usize = 30_000;
 /// only.
 const CLOSELY: usize = 6_000;
 const TIES: f64 = 4e-8;
+/// Friction and pressure vanish together if friction could be at most this part of the greatest force where the condition of
+/// friction ends, and nothing presses this part of the step later.
+const VANISHES: f64 = 1e-6;
+const BEHIND: f64 = 1e-3;
 
 impl Transition<'_> {
     /// Makes one step.
@@ -455,13 +459,30 @@ impl Transition<'_> {
                 most = 0.5 * step.h;
                 continue;
             };
-            let found = found.map(|crossing| (watched[crossing.function], crossing));
+            let found = found.map(|crossing| {
+                (self.of_pressure(closed, watched[crossing.function], &crossing, &step), crossing)
+            });
             return Ok(Attempt::Made(step, found));
         }
         Err(match refused.into_inner().or(undefined.into_inner()) {
             Some(failure) => self.failure(failure),
             None => self.error(None, ErrorKind::Stalled),
         })
+    }
+
+    /// What ends the mode of a contact whose friction and pressure vanish together: the pressure, of which the square in the
+    /// condition of friction has a double zero.
+    fn of_pressure(&self, closed: &[Closed], found: Watched, crossing: &Crossing, step: &Step) -> Watched {
+        let Watched::Cone(place) = found else { return found };
+        let pressure = |fraction: f64| {
+            let at = &mut |after: f64| step.at(after / step.h);
+            let values = self.values(closed, &[Watched::Normal(place)], step.h * fraction, None, at);
+            values.map_or(f64::INFINITY, |values| values[0])
+        };
+        let greatest = self.front.forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        let vanishes = closed[place].mu * pressure(crossing.place) <= VANISHES * greatest
+            && pressure((crossing.place + BEHIND).min(1.0)) < 0.0;
+        if vanishes { Watched::Normal(place) } else { found }
     }
 
     /// Where sides or corners are at a tie, rounding makes gaps jump between two values that are next to each other. What does

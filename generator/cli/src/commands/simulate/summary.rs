@@ -48,10 +48,14 @@ impl Summary {
         self.events.push(Line { time: event.time, name: event.kind.name(), contact, impulse, energy });
     }
 
-    /// The energies at the start, then those at the end.
+    /// The energies at the start, behind the impacts there, then those at the end.
     pub fn energy(&mut self, account: EnergyAccount) {
-        let end = usize::from(self.energy[0].is_some());
-        self.energy[end] = Some(account);
+        if self.energy[0].is_some() {
+            self.energy[1] = Some(account);
+        } else {
+            let before = account.kinetic - account.impacts;
+            self.energy[0] = Some(EnergyAccount { kinetic: before, impacts: 0.0, ..account });
+        }
     }
 
     /// The text.
