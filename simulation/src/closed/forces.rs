@@ -184,9 +184,9 @@ pub(crate) type Margins = SmallVec<[[f64; 2]; FEW]>;
 pub(crate) const SLACK: f64 = 2e-12;
 
 /// The functions that are positive while the modes last: for each contact lambda_n, and for a sticking one
-/// (mu lambda_n)^2 - lambda_tan^2 (else 1), where the square has the sign of lambda_n: nothing is held without pressure. Without friction there is no force to compare: a contact that
-/// does not slip must not begin to, so its acceleration along the plane takes the place of the force
-/// (theory 17.11).
+/// (mu lambda_n)^2 - lambda_tan^2 (else 1). The square has the sign of lambda_n, since nothing is held without
+/// pressure. Without friction there is no force to compare: a contact that does not slip must not begin to, so
+/// its acceleration along the plane takes the place of the force (theory 17.11).
 pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Margins {
     // The forces of contacts that are not pressed are rounding errors.
     let slack = (SLACK * forces.lambda.amax()).max(forces.rounding);

@@ -77,8 +77,8 @@ const LOOKS: usize = 30_000;
 /// only.
 const CLOSELY: usize = 6_000;
 const TIES: f64 = 4e-8;
-/// Friction and pressure vanish together if friction could be at most this part of the greatest force where the condition of
-/// friction ends, and nothing presses this part of the step later.
+/// Friction and normal force vanish together if, where the condition of friction has its zero, mu times the normal force is at
+/// most the first part of the greatest force, and the normal force is negative the second part of the step later.
 const VANISHES: f64 = 1e-6;
 const BEHIND: f64 = 1e-3;
 
@@ -202,8 +202,9 @@ impl Transition<'_> {
         }
     }
 
-    /// Replaces the times to the end of slip by those of the rates along settled directions, where directions follow from the
-    /// state: next to none of slip may have another direction, along which it seems to end at once.
+    /// Replaces the times to the end of slip by those that follow from the rates along settled directions, for contacts whose
+    /// directions follow from the state. Slip that is next to nothing may have another direction itself, and along that one it
+    /// seems to end at once.
     fn ends_along_settled(&self, closed: &[Closed], left: &mut [Option<f64>]) {
         if closed.iter().all(|contact| contact.omega.is_none()) {
             return;
@@ -470,10 +471,14 @@ impl Transition<'_> {
         })
     }
 
-    /// What ends the mode of a contact whose friction and pressure vanish together: the pressure, of which the square in the
-    /// condition of friction has a double zero.
+    /// The function whose zero is the event: the normal force in place of friction, where both vanish together. The square of
+    /// the normal force in the condition of friction has a double zero there, which is known less well.
     fn of_pressure(&self, closed: &[Closed], found: Watched, crossing: &Crossing, step: &Step) -> Watched {
         let Watched::Cone(place) = found else { return found };
+        // Without friction the condition is one of the acceleration.
+        if closed[place].mu == 0.0 {
+            return found;
+        }
         let pressure = |fraction: f64| {
             let at = &mut |after: f64| step.at(after / step.h);
             let values = self.values(closed, &[Watched::Normal(place)], step.h * fraction, None, at);

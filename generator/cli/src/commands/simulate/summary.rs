@@ -48,7 +48,7 @@ impl Summary {
         self.events.push(Line { time: event.time, name: event.kind.name(), contact, impulse, energy });
     }
 
-    /// The energies at the start, behind the impacts there, then those at the end.
+    /// Takes the energies after the impacts at the start, then those at the end. The account begins before these impacts.
     pub fn energy(&mut self, account: EnergyAccount) {
         if self.energy[0].is_some() {
             self.energy[1] = Some(account);
